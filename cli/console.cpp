@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/line_editor.hpp"
+#include "cli/pace.hpp"
+#include "cli/parol6_console.hpp"
+#include "cli/screen.hpp"
+#include "cli/signals.hpp"
+#include "cli/target_options.hpp"
+
+namespace armjig::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kHelp =
+    "Drives an arm by hand, or by commands from a pipe.\n"
+    "\n"
+    "  armjig console parol6 --target emulated:                 try it: 'help' lists the commands\n"
+    "  armjig console parol6 --target pty:/tmp/parol6 --allow state,move\n"
+    "  echo 'home' | armjig console parol6 --target emulated:   in virtual time, at once\n"
+    "\n"
+    "On a terminal: Tab completes, Up brings back earlier lines, Ctrl-C stops the arm, Ctrl-D\n"
+    "leaves. From a pipe: one command a line, each to its end before the next, # begins a "
+    "comment.\n"
+    "In both, a frame leaves every 10 ms, and the arm stands at the end.\n"
+    "\n"
+    "Exit codes from a pipe: 0 all had effect, 1 some had none or were refused, 2 some cannot be\n"
+    "read, 3 the target is silent or gone, 4 there was no command.";
+
+struct Options {
+  std::string device;
+  TargetOptions target;
+};
+
+constexpr Duration kPeriod = 10ms;
+
+/// Brings the arm to a stand, at most for two seconds.
+Outcome<void> leave(Parol6Console& console) {
+  console.stop();
+  const auto deadline = console.now() + 2s;
+  while (console.is_busy() && console.now() < deadline) {
+    if (auto cycled = console.cycle(); !cycled) return cycled;
+  }
+  return {};
+}
+
+/// Waits for a sign of life. False: none came within a second.
+Outcome<bool> hears_the_board(Parol6Console& console) {
+  const auto deadline = console.now() + 1s;
+  while (!console.hears_the_board() && console.now() < deadline) {
+    if (const auto cycled = console.cycle(); !cycled) return tl::unexpected{cycled.error()};
+  }
+  return console.hears_the_board();
+}
+
+Problem silence(const Options& options) {
+  return {ErrorCode::kTimedOut, options.target.target,
+          fmt::format("no telemetry came: is a {} there, and switched on?", options.device)};
+}
+
+/// Lines of standard input, without waiting for them if other things have to go on.
+class InputLines {
+ public:
+  enum class Patience : std::uint8_t { kWait, kNoWait };
+
+  /// The next line without its end; none: it is not there yet, or input has ended.
+  std::optional<std::string> next(Patience patience) {
+    while (!has_ended_ && text_.find('\n') == std::string::npos) {
+      pollfd ready{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+      if (::poll(&ready, 1, patience == Patience::kWait ? -1 : 0) != 1) return std::nullopt;
+      std::array<char, 4096> buffer;
+      const auto size = ::read(STDIN_FILENO, buffer.data(), buffer.size());
+      has_ended_ = size <= 0;
+      if (size > 0) text_.append(buffer.data(), static_cast<std::size_t>(size));
+    }
+    if (text_.empty()) return std::nullopt;
+    const auto end = std::min(text_.find('\n'), text_.size());
+    auto line = text_.substr(0, end);
+    text_.erase(0, end + 1);
+    return line;
+  }
+  [[nodiscard]] bool has_ended() const { return has_ended_ && text_.empty(); }
+
+ private:
+  std::string text_;
+  bool has_ended_ = false;
+};
+
+/// Commands from a pipe, each to its end.
+class PipeSession {
+ public:
+  PipeSession(Rig rig, const Options& options, InputLines::Patience patience)
+      : options_{options},
+        patience_{patience},
+        console_{std::move(rig), options.target.target,
+                 [this](Tone tone, std::string_view text) { say(tone, text); }} {}
+
+  Exit run() {
+    const auto is_there = hears_the_board(console_);
+    if (!is_there) return report(is_there.error());
+    if (!*is_there) return report(silence(options_));
+    if (const auto done = run_commands(); !done) return report(done.error());
+    line_ = 0;
+    if (const auto left = leave(console_); !left) return report(left.error());
+    if (is_interrupted_) return Exit::kInterrupted;
+    return has_run_ ? exit_ : Exit::kNothing;
+  }
+
+ private:
+  Outcome<void> run_commands() {
+    while (!console_.wants_to_quit() && !is_interrupted()) {
+      const auto line = input_.next(patience_);
+      if (line) {
+        ++line_;
+        console_.begin(*line);
+        has_run_ = has_run_ || !is_blank(*line);
+        if (auto done = finish(); !done) return done;
+      } else if (input_.has_ended()) {
+        return {};
+      } else if (auto cycled = console_.cycle(); !cycled) {
+        return cycled;
+      }
+    }
+    return {};
+  }
+
+  Outcome<void> finish() {
+    while (console_.is_busy() && !is_interrupted()) {
+      if (auto cycled = console_.cycle(); !cycled) return cycled;
+    }
+    return {};
+  }
+
+  static bool is_blank(std::string_view line) {
+    const auto first = line.find_first_not_of(" \t\r");
+    return first == std::string_view::npos || line[first] == '#';
+  }
+
+  bool is_interrupted() {
+    is_interrupted_ = is_interrupted_ || signals_.take_interrupt() || signals_.must_end();
+    return is_interrupted_;
+  }
+
+  void say(Tone tone, std::string_view text) {
+    switch (tone) {
+      case Tone::kAnswer:
+        if (line_ > 0) fmt::print("{}\n", text);
+        break;
+      case Tone::kEvent:
+        fmt::print("* {}\n", text);
+        break;
+      case Tone::kFailed:
+        complain(text, Exit::kFindings);
+        break;
+      case Tone::kUnreadable:
+        complain(text, Exit::kUsage);
+        break;
+    }
+    std::fflush(stdout);
+  }
+
+  void complain(std::string_view text, Exit exit) {
+    if (line_ > 0) fmt::print(stderr, "line {}: {}\n", line_, text);
+    if (line_ == 0) fmt::print(stderr, "at the end: {}\n", text);
+    exit_ = std::max(exit_, exit);
+  }
+
+  const Options& options_;
+  InputLines::Patience patience_;
+  Signals signals_;
+  InputLines input_;
+  Parol6Console console_;
+  int line_ = 0;  ///< of the input; 0: none
+  bool has_run_ = false;
+  bool is_interrupted_ = false;
+  Exit exit_ = Exit::kPassed;
+};
+
+/// A person at a terminal.
+class TerminalSession {
+ public:
+  TerminalSession(Rig rig, const Options& options, Pace::By by)
+      : options_{options},
+        console_{std::move(rig), options.target.target,
+                 [this](Tone tone, std::string_view text) { say(tone, text); }},
+        pace_{by, console_.now()} {}
+
+  Exit run(const RigOptions& how) {
+    greet(how);
+    while (!console_.wants_to_quit() && !problem_) {
+      const auto line = editor_.read_line([this] { return meanwhile(); });
+      if (!line) break;
+      console_.begin(*line);
+    }
+    if (!problem_) {
+      if (const auto left = leave(console_); !left) problem_ = left.error();
+    }
+    return problem_ ? report(*problem_) : Exit::kPassed;
+  }
+
+ private:
+  void greet(const RigOptions& how) {
+    const auto& target = options_.target.target;
+    fmt::print("{} at {}. Tab completes, Ctrl-C stops the arm, 'help' lists the commands.\n",
+               options_.device, target);
+    if (!how.target.is_emulated() && options_.target.allow.empty()) {
+      fmt::print("Only looking is allowed; to do more, start with --allow state,move,home,grip.\n");
+    }
+    const auto is_there = hears_the_board(console_);
+    if (!is_there) problem_ = is_there.error();
+    if (is_there && !*is_there) fmt::print("No telemetry: is the board switched on?\n");
+  }
+
+  /// A period of the drive between keys.
+  LineEditor::Wish meanwhile() {
+    if (signals_.must_end() || console_.wants_to_quit()) return LineEditor::Wish::kEnd;
+    if (signals_.take_interrupt()) {
+      console_.stop();
+      return LineEditor::Wish::kDropLine;
+    }
+    if (const auto wait = pace_.until(console_.now() + kPeriod); wait > 0ns) {
+      std::this_thread::sleep_for(wait);
+    }
+    if (const auto cycled = console_.cycle(); !cycled) {
+      problem_ = cycled.error();
+      return LineEditor::Wish::kEnd;
+    }
+    const auto occupation = console_.occupation();
+    editor_.set_prompt(options_.device + (occupation.empty() ? "" : " [" + occupation + "]") +
+                       "> ");
+    return LineEditor::Wish::kGoOn;
+  }
+
+  void say(Tone tone, std::string_view text) {
+    const auto* const mark = tone == Tone::kAnswer ? "" : tone == Tone::kEvent ? "* " : "! ";
+    editor_.print(fmt::format("{}{}\n", mark, text));
+  }
+
+  const Options& options_;
+  Signals signals_;
+  LineEditor editor_{Parol6Console::candidates, history_file()};
+  Parol6Console console_;
+  Pace pace_;
+  std::optional<Problem> problem_;
+};
+
+Exit console(const Options& options) {
+  const auto how = parse_target_options(options.target);
+  if (!how) return report(how.error());
+  auto rig = open_rig(options.device, *how);
+  if (!rig) return report(rig.error());
+  const bool is_virtual = how->target.is_emulated();
+  if (::isatty(STDIN_FILENO) == 1 && has_screen()) {
+    const auto by = is_virtual ? Pace::By::kWallClock : Pace::By::kPort;
+    return TerminalSession{*std::move(rig), options, by}.run(*how);
+  }
+  // In virtual time nothing passes while nobody says anything.
+  const auto patience = is_virtual ? InputLines::Patience::kWait : InputLines::Patience::kNoWait;
+  return PipeSession{*std::move(rig), options, patience}.run();
+}
+
+}  // namespace
+
+void add_console(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("console", kHelp);
+  const auto options = std::make_shared<Options>();
+  command->add_option("DEVICE", options->device, "what is there")
+      ->required()
+      ->check(CLI::IsMember({"parol6"}));
+  add_target_options(*command, options->target);
+  command->callback([options, &action] { action = [options] { return console(*options); }; });
+}
+
+}  // namespace armjig::cli

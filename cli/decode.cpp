@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "harness/capture/message_json.hpp"
+#include "harness/capture/trace.hpp"
+#include "harness/core/hex.hpp"
+#include "harness/wire/dissector.hpp"
+
+namespace armjig::cli {
+namespace {
+
+constexpr auto kHelp =
+    "Shows what bytes mean, field by field.\n"
+    "\n"
+    "  armjig decode parol6 'FF FF FF 34 00 ... 01 02'     hexadecimal digits\n"
+    "  armjig decode parol6 --file session.bin             raw bytes\n"
+    "  some-program | armjig decode parol6 --file - --json one JSON object a message\n"
+    "\n"
+    "A file may hold raw bytes, hexadecimal digits or a golden-trace/1 recording; which of them "
+    "is\n"
+    "seen from its content unless --format says it. Bytes that are no message are shown as noise\n"
+    "with the reason.";
+
+struct Options {
+  std::string device;
+  std::vector<std::string> hex;
+  std::string file;
+  std::string format = "auto";
+  std::string direction = "auto";
+  bool json = false;
+};
+
+/// One piece of traffic to decode.
+struct Chunk {
+  Direction direction{};
+  Instant time{};
+  std::vector<std::byte> bytes;
+};
+
+Outcome<std::string> read_all(const std::string& path) {
+  if (path == "-") return std::string{std::istreambuf_iterator<char>{std::cin}, {}};
+  errno = 0;
+  std::ifstream in{path, std::ios::binary};
+  if (!in) return problem(ErrorCode::kCannotRead, path, "check the path and its permissions");
+  std::string text{std::istreambuf_iterator<char>{in}, {}};
+  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "it is a folder or cannot be read");
+  return text;
+}
+
+Outcome<std::vector<std::byte>> parse_hex(const std::string& where, const std::string& text) {
+  auto bytes = from_hex(text);
+  if (bytes) return *std::move(bytes);
+  return problem(bytes.error().code,
+                 fmt::format("{}, character {}", where, bytes.error().detail + 1),
+                 "write two digits for each byte");
+}
+
+Outcome<std::vector<Chunk>> chunks_of_trace(const std::string& path, const std::string& text) {
+  const auto trace = parse_trace(path, text);
+  if (!trace) return tl::unexpected{trace.error()};
+  std::vector<Chunk> chunks;
+  for (const auto& event : trace->events) {
+    if (event.dir == "to_device") {
+      chunks.push_back({Direction::kToDevice, event.time, event.bytes});
+    } else if (event.dir == "from_device") {
+      chunks.push_back({Direction::kFromDevice, event.time, event.bytes});
+    }
+  }
+  return chunks;
+}
+
+std::string guess_format(const std::string& content) {
+  if (content.starts_with('{')) return "trace";
+  return from_hex(content) ? "hex" : "raw";
+}
+
+/// Without a direction the bytes go through both dissectors, and the one that finds more messages
+/// in them wins.
+Direction guess_direction(const DissectorEntry& entry, Bytes bytes) {
+  const auto messages_in = [&](Direction direction) {
+    std::vector<Message> messages;
+    entry.make()->feed(direction, {}, bytes, messages);
+    return std::ranges::count_if(messages, [](const Message& m) { return m.fault.empty(); });
+  };
+  return messages_in(Direction::kToDevice) > messages_in(Direction::kFromDevice)
+             ? Direction::kToDevice
+             : Direction::kFromDevice;
+}
+
+Direction direction_of(const Options& options, const DissectorEntry& entry, Bytes bytes) {
+  if (options.direction == "to-device") return Direction::kToDevice;
+  if (options.direction == "from-device") return Direction::kFromDevice;
+  return guess_direction(entry, bytes);
+}
+
+Outcome<std::vector<Chunk>> read_chunks(const Options& options, const DissectorEntry& entry) {
+  const auto one_chunk = [&](std::vector<std::byte> bytes) {
+    const auto direction = direction_of(options, entry, bytes);
+    return std::vector{Chunk{direction, {}, std::move(bytes)}};
+  };
+  if (options.file.empty()) {
+    std::string text;
+    for (const auto& word : options.hex) text += word + ' ';
+    return parse_hex("argument", text).map(one_chunk);
+  }
+  const auto content = read_all(options.file);
+  if (!content) return tl::unexpected{content.error()};
+  const auto format = options.format == "auto" ? guess_format(*content) : options.format;
+  if (format == "trace") return chunks_of_trace(options.file, *content);
+  if (format == "hex") return parse_hex(options.file, *content).map(one_chunk);
+  const auto raw = std::as_bytes(std::span{*content});
+  return one_chunk({raw.begin(), raw.end()});
+}
+
+Exit decode(const Options& options) {
+  if (options.hex.empty() == options.file.empty()) {
+    fmt::print(stderr, "armjig decode: give hexadecimal digits or --file, one of them\n");
+    return Exit::kUsage;
+  }
+  const auto entry = std::ranges::find(dissectors(), options.device, &DissectorEntry::device);
+  const auto chunks = read_chunks(options, *entry);
+  if (!chunks) {
+    (void)report(chunks.error());
+    return Exit::kUsage;
+  }
+  const auto dissector = entry->make();
+  std::vector<Message> messages;
+  for (const auto& chunk : *chunks) {
+    dissector->feed(chunk.direction, chunk.time, chunk.bytes, messages);
+  }
+  dissector->finish(messages);
+  bool all_are_messages = true;
+  for (const auto& message : messages) {
+    all_are_messages = all_are_messages && message.fault.empty();
+    if (options.json) {
+      fmt::print("{}\n", to_json(message));
+    } else {
+      fmt::print("{}\n", to_text(message));
+    }
+  }
+  if (messages.empty()) {
+    fmt::print(stderr, "armjig decode: there are no bytes to decode\n");
+    return Exit::kNothing;
+  }
+  return all_are_messages ? Exit::kPassed : Exit::kFindings;
+}
+
+std::vector<std::string> device_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : dissectors()) names.emplace_back(entry.device);
+  return names;
+}
+
+}  // namespace
+
+void add_decode(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("decode", kHelp);
+  const auto options = std::make_shared<Options>();
+  command->add_option("DEVICE", options->device, "whose protocol")
+      ->required()
+      ->check(CLI::IsMember(device_names()));
+  command->add_option("HEX", options->hex, "hexadecimal digits, in any number of words");
+  command->add_option("--file", options->file, "read this file, '-' for standard input");
+  command->add_option("--format", options->format, "what the file holds")
+      ->check(CLI::IsMember({"auto", "raw", "hex", "trace"}))
+      ->capture_default_str();
+  command->add_option("--direction", options->direction, "who sent the bytes")
+      ->check(CLI::IsMember({"auto", "to-device", "from-device"}))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "one JSON object a message (docs/schemas)");
+  command->callback([options, &action] { action = [options] { return decode(*options); }; });
+}
+
+}  // namespace armjig::cli

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/parol6_arguments.hpp"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <system_error>
+
+#include "harness/wire/parol6/joints.hpp"
+
+namespace armjig::cli {
+namespace {
+
+using parol6::kJointCount;
+using parol6::kJoints;
+
+constexpr double kMostSteps = 8'388'607;  // 24 bits
+constexpr double kMostSpeed = 50'000;     // the board's own limit
+
+struct Number {
+  double value{};
+  std::string_view unit;  ///< what stands behind it
+};
+
+Parsed<Number> parse_number(std::string_view text) {
+  const auto digits = text.substr(text.starts_with('+') ? 1 : 0);
+  Number number;
+  const auto* const end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, number.value);
+  if (error != std::errc{} || !std::isfinite(number.value)) {
+    return tl::unexpected{fmt::format("'{}' is not a number", text)};
+  }
+  number.unit = {stop, end};
+  return number;
+}
+
+auto unknown_unit(std::string_view text, std::string_view units) {
+  return tl::unexpected{fmt::format("'{}' has an unknown unit: write {}", text, units)};
+}
+
+}  // namespace
+
+Parsed<std::size_t> parse_joint(std::string_view text) {
+  const bool is_joint = text.size() == 2 && (text[0] == 'j' || text[0] == 'J') && text[1] >= '1' &&
+                        text[1] < static_cast<char>('1' + kJointCount);
+  if (is_joint) return static_cast<std::size_t>(text[1] - '1');
+  for (const std::string_view axis : {"x", "y", "z", "rx", "ry", "rz"}) {
+    if (text == axis) return tl::unexpected<std::string>{"Cartesian jog is not there yet"};
+  }
+  return tl::unexpected{fmt::format("'{}' is no joint: they are j1 to j6", text)};
+}
+
+Parsed<StepsPerSecond> parse_speed(std::size_t joint, std::string_view text) {
+  const auto number = parse_number(text);
+  if (!number) return tl::unexpected{number.error()};
+  const auto& [value, unit] = *number;
+  const bool is_degrees = unit == "deg" || unit == "deg/s";
+  if (!is_degrees && !unit.empty() && unit != "steps" && unit != "steps/s") {
+    return unknown_unit(text, "steps/s or deg/s");
+  }
+  const auto one_step = kJoints[joint].speed(StepsPerSecond{1}).value;
+  const auto steps = is_degrees ? value / one_step : value;
+  if (std::abs(steps) > kMostSpeed) {
+    return tl::unexpected{
+        fmt::format("'{}' is too fast: the board's limit for j{} is {:.0f} "
+                    "steps/s or {:.1f} deg/s",
+                    text, joint + 1, kMostSpeed, kMostSpeed * one_step)};
+  }
+  const auto speed = StepsPerSecond{static_cast<std::int32_t>(std::lround(steps))};
+  if (speed.value == 0) return tl::unexpected{fmt::format("'{}' is no motion", text)};
+  return speed;
+}
+
+Parsed<Steps> parse_position(std::size_t joint, std::string_view text) {
+  const auto number = parse_number(text);
+  if (!number) return tl::unexpected{number.error()};
+  const auto& [value, unit] = *number;
+  if (!unit.empty() && unit != "steps" && unit != "deg") {
+    return unknown_unit(text, "steps or deg");
+  }
+  const auto one_step = kJoints[joint].angle(Steps{1}).value;
+  const auto steps = unit == "deg" ? value / one_step : value;
+  if (std::abs(steps) <= kMostSteps) return Steps{static_cast<std::int32_t>(std::lround(steps))};
+  return tl::unexpected{fmt::format("'{}' is farther than a frame can say", text)};
+}
+
+Parsed<Duration> parse_seconds(std::string_view text) {
+  const auto number = parse_number(text);
+  if (!number) return tl::unexpected{number.error()};
+  if (!number->unit.empty() && number->unit != "s") return unknown_unit(text, "seconds");
+  if (number->value <= 0 || number->value > 3600) {
+    return tl::unexpected{fmt::format("'{}' is not a time: above 0, at most 3600 s", text)};
+  }
+  return std::chrono::round<Duration>(std::chrono::duration<double>{number->value});
+}
+
+Parsed<std::int16_t> parse_whole(std::string_view what, std::string_view text, int least,
+                                 int most) {
+  int value{};
+  const auto* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const bool is_good = error == std::errc{} && stop == end && value >= least && value <= most;
+  if (is_good) return static_cast<std::int16_t>(value);
+  return tl::unexpected{
+      fmt::format("'{}' is no {}: a whole number from {} to {}", text, what, least, most)};
+}
+
+}  // namespace armjig::cli

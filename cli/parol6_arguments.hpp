@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "harness/core/quantity.hpp"
+#include "harness/core/time.hpp"
+
+/// How joints, speeds and places of a PAROL6 are typed. What cannot be read is told in a sentence.
+namespace armjig::cli {
+
+template <class T>
+using Parsed = tl::expected<T, std::string>;
+
+/// `j1` to `j6`, as an index from 0.
+[[nodiscard]] Parsed<std::size_t> parse_joint(std::string_view text);
+
+/// `-500`, `-500steps/s`, `10deg`, `10deg/s`: not 0, and not beyond what the board can.
+[[nodiscard]] Parsed<StepsPerSecond> parse_speed(std::size_t joint, std::string_view text);
+
+/// `1000`, `1000steps`, `90deg`: what fits in a frame.
+[[nodiscard]] Parsed<Steps> parse_position(std::size_t joint, std::string_view text);
+
+/// `1.5` or `1.5s`: above 0, at most an hour.
+[[nodiscard]] Parsed<Duration> parse_seconds(std::string_view text);
+
+/// A whole number in a range; `what` is named in the sentence.
+[[nodiscard]] Parsed<std::int16_t> parse_whole(std::string_view what, std::string_view text,
+                                               int least, int most);
+
+}  // namespace armjig::cli

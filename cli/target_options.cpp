@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/target_options.hpp"
+
+#include <fmt/core.h>
+
+#include "emulators/host/emulated_target.hpp"
+
+namespace armjig::cli {
+
+void add_target_options(CLI::App& app, TargetOptions& options) {
+  app.add_option("--target", options.target,
+                 "where the device is: emulated:[?OPTION=VALUE&...], pty:PATH or tcp:HOST:PORT")
+      ->type_name("TARGET");
+  app.add_option("--allow", options.allow,
+                 "what may be done to a device that is not emulated: state,move,home,grip or all "
+                 "(default: only look)")
+      ->type_name("LIST");
+  app.add_option("--impair", options.impair,
+                 "make the link bad, as in loss=0.1%,delay=normal(2ms,1ms),split=random,seed=7")
+      ->type_name("SPEC");
+  app.add_option("--wire-log", options.wire_log, "write every byte that passes to this file")
+      ->type_name("FILE");
+}
+
+Outcome<RigOptions> parse_target_options(const TargetOptions& options) {
+  if (options.target.empty()) {
+    return problem(ErrorCode::kBadTarget, "--target is missing",
+                   "for a first try: --target emulated:");
+  }
+  RigOptions rig;
+  rig.wire_log = options.wire_log;
+  auto target = parse_target(options.target);
+  if (!target) return tl::unexpected{target.error()};
+  rig.target = *std::move(target);
+  const auto permissions = parse_permissions(options.allow);
+  if (!permissions) return tl::unexpected{permissions.error()};
+  rig.permissions = *permissions;
+  if (options.impair.empty()) return rig;
+  const auto impairment = parse_impairment(options.impair);
+  if (!impairment) return tl::unexpected{impairment.error()};
+  rig.impairment = *impairment;
+  return rig;
+}
+
+Outcome<Rig> open_rig(std::string_view device, const RigOptions& options) {
+  return Rig::open(device, options, emulated_target(device).open);
+}
+
+Outcome<Rig> open_rig(std::string_view device, const TargetOptions& options) {
+  const auto rig = parse_target_options(options);
+  return rig ? open_rig(device, *rig) : tl::unexpected{rig.error()};
+}
+
+std::string to_arguments(const TargetOptions& options) {
+  std::string text;
+  if (!options.allow.empty()) text += fmt::format(" --allow {}", options.allow);
+  if (!options.impair.empty()) text += fmt::format(" --impair '{}'", options.impair);
+  return text;
+}
+
+}  // namespace armjig::cli

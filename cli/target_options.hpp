@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
+
+#include "harness/core/error.hpp"
+#include "harness/rig/rig.hpp"
+
+namespace armjig::cli {
+
+/// What every subcommand with a target is told about it, as written.
+struct TargetOptions {
+  std::string target;
+  std::string allow;
+  std::string impair;
+  std::string wire_log;
+};
+
+/// Adds `--target`, `--allow`, `--impair` and `--wire-log`. None is required here: `open_rig` says
+/// in its own words that the target is missing.
+void add_target_options(CLI::App& app, TargetOptions& options);
+
+/// Reads the options.
+[[nodiscard]] Outcome<RigOptions> parse_target_options(const TargetOptions& options);
+
+/// Reads the options and opens the target. `device` must be one that `emulated:` can be.
+[[nodiscard]] Outcome<Rig> open_rig(std::string_view device, const RigOptions& options);
+[[nodiscard]] Outcome<Rig> open_rig(std::string_view device, const TargetOptions& options);
+
+/// What a command line needs besides the target to meet it in the same way again, for a report;
+/// begins with a blank unless it is empty. The wire log is left out.
+[[nodiscard]] std::string to_arguments(const TargetOptions& options);
+
+}  // namespace armjig::cli

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+# How every library of this project is built. Nothing here is exported.
+
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+add_library(armjig_flags INTERFACE)
+target_compile_features(armjig_flags INTERFACE cxx_std_20)
+target_compile_options(armjig_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                       # GCC 12 sees overlaps and uninitialised bytes in std::string that are not
+                       # there (its bugs 105651 and 105562); Clang watches for real ones.
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-maybe-uninitialized>
+                       $<$<BOOL:${ARMJIG_WERROR}>:-Werror>)
+
+find_program(ARMJIG_CCACHE ccache)
+if(ARMJIG_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${ARMJIG_CCACHE})
+endif()
+
+# armjig_library(NAME SOURCES folder... [EXACT_FLOATS]
+#                [PUBLIC target...] [PRIVATE target...] [HEADERS_OF target...])
+#
+# The library armjig_NAME, exported as armjig::NAME, of all sources and headers in those folders.
+# Headers are included from the root of the tree. EXACT_FLOATS forbids fused multiply-add, which the
+# recordings of real devices do not have. HEADERS_OF names header-only libraries that our headers do
+# not show: whoever links to us later does not need them.
+function(armjig_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "EXACT_FLOATS" "" "SOURCES;PUBLIC;PRIVATE;HEADERS_OF")
+  list(TRANSFORM arg_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/)
+  list(TRANSFORM arg_SOURCES APPEND /*.cpp OUTPUT_VARIABLE sources)
+  list(TRANSFORM arg_SOURCES APPEND /*.hpp OUTPUT_VARIABLE headers)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${sources})
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${headers})
+  list(TRANSFORM arg_HEADERS_OF REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
+  add_library(armjig_${name} STATIC ${sources})
+  add_library(armjig::${name} ALIAS armjig_${name})
+  set_target_properties(armjig_${name} PROPERTIES EXPORT_NAME ${name})
+  target_sources(armjig_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
+                 FILES ${headers})
+  target_compile_features(armjig_${name} PUBLIC cxx_std_20)
+  target_link_libraries(armjig_${name} PUBLIC ${arg_PUBLIC}
+                        PRIVATE ${arg_PRIVATE} ${arg_HEADERS_OF} $<BUILD_INTERFACE:armjig_flags>)
+  if(arg_EXACT_FLOATS)
+    target_compile_options(armjig_${name} PRIVATE -ffp-contract=off)
+  endif()
+  install(TARGETS armjig_${name} EXPORT armjigTargets
+          ARCHIVE COMPONENT dev
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/armjig COMPONENT dev)
+endfunction()

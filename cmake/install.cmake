@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+# What `cmake --install` puts where, and the Debian packages: armjig (component runtime) and
+# libarmjig-dev (component dev). The libraries and their headers: armjig_library().
+include(CMakePackageConfigHelpers)
+
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/armjig)
+write_basic_package_version_file(armjigConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(EXPORT armjigTargets NAMESPACE armjig:: DESTINATION ${config_dir} COMPONENT dev)
+install(FILES cmake/armjigConfig.cmake ${PROJECT_BINARY_DIR}/armjigConfigVersion.cmake
+        DESTINATION ${config_dir} COMPONENT dev)
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT docs)
+
+# The papers of a Debian package, left out of a plain installation.
+string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(cmake/package/changelog.in changelog)
+execute_process(COMMAND gzip -9nf changelog WORKING_DIRECTORY ${PROJECT_BINARY_DIR}
+                COMMAND_ERROR_IS_FATAL ANY)
+function(install_papers component package)
+  install(FILES cmake/package/copyright ${PROJECT_BINARY_DIR}/changelog.gz
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
+          COMPONENT ${component} EXCLUDE_FROM_ALL)
+endfunction()
+
+set(CPACK_COMPONENTS_ALL dev)
+install_papers(dev libarmjig-dev)
+if(ARMJIG_BUILD_CLI)
+  list(APPEND CPACK_COMPONENTS_ALL runtime)
+  install_papers(runtime armjig)
+  add_custom_command(OUTPUT armjig.bash COMMAND armjig completion bash > armjig.bash VERBATIM)
+  add_custom_target(completion ALL DEPENDS armjig.bash)
+  install(TARGETS armjig RUNTIME COMPONENT runtime)
+  install(FILES ${PROJECT_BINARY_DIR}/armjig.bash RENAME armjig
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
+  install(DIRECTORY captures/parol6 DESTINATION ${CMAKE_INSTALL_DATADIR}/armjig/captures
+          COMPONENT runtime)
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The armjig authors <armjig@example.org>")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
+    GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME armjig)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION electronics)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "Emulates robot-arm controllers to the byte, checks real ones
+against the rules of their protocols, and replays recordings of real devices.")
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libarmjig-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libexpected-dev, libfmt-dev")
+set(CPACK_DEBIAN_DEV_DESCRIPTION "Static libraries, headers and the CMake package: codecs and
+emulated devices without any I/O, and what the armjig program is made of.")
+include(CPack)

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/parol6/board.hpp"
+
+#include <algorithm>
+
+namespace armjig::parol6 {
+namespace {
+
+constexpr float kMaxSpeed = 50'000.0F;  // parol6.jog.clamp
+constexpr std::array<StepsPerSecond2, kJointCount> kPowerUpAcceleration{
+    StepsPerSecond2{1000}, StepsPerSecond2{1000}, StepsPerSecond2{500},
+    StepsPerSecond2{500},  StepsPerSecond2{500},  StepsPerSecond2{100}};
+
+/// The built-in two-leg demonstration.
+struct DemoParameters {
+  float max_speed_and_acceleration{};
+  Steps out{};
+  Steps back{};
+};
+constexpr std::array<DemoParameters, kJointCount> kDemoTable{{{6000, Steps{6179}, Steps{10240}},
+                                                              {4000, Steps{-22222}, Steps{-32000}},
+                                                              {3500, Steps{49812}, Steps{57905}},
+                                                              {3500, Steps{0}, Steps{0}},
+                                                              {3500, Steps{4059}, Steps{0}},
+                                                              {7500, Steps{46075}, Steps{32000}}}};
+constexpr std::int64_t kDemoSleepUs = 2'000'000;
+constexpr std::int64_t kStartUpUs = 740'000;
+
+// Telemetry that the firmware never computes.
+constexpr std::uint8_t kSpareFlags = 0x03;
+constexpr std::uint8_t kTimeoutError = 100;
+constexpr GripperReport kGripperAtPowerUp{.id = 0,
+                                          .position = 0,
+                                          .speed = 1,
+                                          .current = Milliamperes{2},
+                                          .status = 1,
+                                          .object_detection = 1};
+
+std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant) noexcept {
+  std::array<Joint, kJointCount> joints;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    joints[j].axis = plant.axes[j];
+    joints[j].pressed_level = kHomingTable[j].pressed_level;
+    joints[j].stepper.set_max_speed(kMaxSpeed);
+    joints[j].stepper.set_acceleration(kPowerUpAcceleration[j]);
+    joints[j].stepper.set_speed(0.0F);
+  }
+  return joints;
+}
+
+constexpr Instant instant(std::int64_t pass) noexcept {
+  return at(std::chrono::microseconds{pass});
+}
+
+}  // namespace
+
+Board::Board(const Plant& plant, const BoardTiming& timing)
+    : timing_{timing},
+      joints_{joints_at_power_up(plant)},
+      inputs_{plant.inputs},
+      gripper_{kGripperAtPowerUp} {}
+
+void Board::receive(Instant time, Bytes bytes) {
+  run_before(time);
+  bytes_waiting_.insert(bytes_waiting_.end(), bytes.begin(), bytes.end());
+}
+
+void Board::receive_can(Instant time, const CanFrame& frame) {
+  run_before(time);
+  can_waiting_.push_back(frame);
+}
+
+void Board::advance_to(Instant time) { run_passes(microseconds(time)); }
+
+/// Runs the passes that start earlier than `time`.
+void Board::run_before(Instant time) { run_passes(microseconds(time - Duration{1})); }
+
+std::optional<Instant> Board::next_event() const noexcept {
+  if (!is_waiting_for_pass()) return std::nullopt;
+  return instant(next_pass_);
+}
+
+bool Board::is_waiting_for_pass() const noexcept {
+  return !bytes_waiting_.empty() || !can_waiting_.empty();
+}
+
+void Board::reboot(Instant time) {
+  run_before(time);
+  const auto now_us = microseconds(time);
+  auto sent = std::move(sent_);
+  const auto was_plain = uses_plain_loop_;
+  *this = Board{plant(), timing_};
+  sent_ = std::move(sent);
+  uses_plain_loop_ = was_plain;
+  start_ = next_pass_ = now_us + kStartUpUs;
+}
+
+Plant Board::plant() const noexcept {
+  Plant plant;
+  for (std::size_t j = 0; j < kJointCount; ++j) plant.axes[j] = joints_[j].axis;
+  plant.inputs = inputs_;
+  return plant;
+}
+
+void Board::set_plant(const Plant& plant) noexcept {
+  for (std::size_t j = 0; j < kJointCount; ++j) joints_[j].axis = plant.axes[j];
+  inputs_ = plant.inputs;
+}
+
+std::uint32_t Board::timer(std::int64_t pass) const noexcept {
+  // 703,125 Hz is 45 ticks in 64 us.
+  const auto ticks = static_cast<std::uint64_t>(pass - start_) * 45 / 64;
+  const auto mask = (std::uint64_t{1} << timing_.timer_bits) - 1;
+  return static_cast<std::uint32_t>((timing_.timer_at_start + ticks) & mask);
+}
+
+Micros Board::clock(std::int64_t pass) const noexcept {
+  return {static_cast<std::uint32_t>(pass - start_) + timing_.micros_at_start};
+}
+
+void Board::run_passes(std::int64_t last) {
+  while (next_pass_ <= last) {
+    const bool must_communicate = is_waiting_for_pass();
+    auto pass = coast(must_communicate ? next_pass_ : last);
+    if (pass == kNoPass) {
+      pass = next_pass_;
+      if (control(pass) == Next::kSleep) {
+        next_pass_ = pass + kDemoSleepUs;
+        continue;
+      }
+    }
+    if (must_communicate) communicate(pass);
+    next_pass_ = pass + timing_.pass_period_us;
+  }
+}
+
+/// Acts on the latched command in as many passes as repeat the last one, up to `last`. Answers the
+/// last of them, `kNoPass` if there was none.
+std::int64_t Board::coast(std::int64_t last) {
+  if (outlook_ == Outlook::kOpen) return kNoPass;
+  const auto period = std::int64_t{timing_.pass_period_us};
+  PassSpan span{.first = next_pass_,
+                .last = next_pass_ + (last - next_pass_) / period * period,
+                .period = timing_.pass_period_us,
+                .clock_offset = clock(0).value};
+  if (outlook_ == Outlook::kStill) return span.last;
+  if (outlook_ == Outlook::kSteady) {
+    for (auto& joint : joints_) joint.coast(span);
+    return span.last;
+  }
+  for (;;) {
+    auto trial = joints_;
+    auto earliest = kNoPass;
+    for (auto& joint : trial) earliest = std::min(earliest, joint.coast(span));
+    if (earliest == kNoPass) {
+      joints_ = trial;
+      return span.last;
+    }
+    if (earliest == span.first) return kNoPass;
+    span.last = earliest - period;
+  }
+}
+
+Board::Outlook Board::outlook() const noexcept {
+  if (!is_settled_ || uses_plain_loop_) return Outlook::kOpen;
+  auto outlook = Outlook::kStill;
+  for (const auto& joint : joints_) {
+    switch (joint.motion) {
+      case Motion::kNone:
+        break;
+      case Motion::kSpeed:
+      case Motion::kGoTo:
+        outlook = std::max(outlook, Outlook::kSteady);
+        break;
+      case Motion::kSeek:
+      case Motion::kToPosition:
+      case Motion::kRamp:
+        outlook = Outlook::kWatched;
+        break;
+      case Motion::kSeveral:
+        return Outlook::kOpen;
+    }
+  }
+  return outlook;
+}
+
+/// One pass up to where it turns to the link.
+Board::Next Board::control(std::int64_t pass) {
+  is_settled_ = true;
+  for (auto& joint : joints_) joint.motion = Motion::kNone;
+  const auto next = act(clock(pass));
+  outlook_ = outlook();
+  return next;
+}
+
+Board::Next Board::act(Micros now) {
+  switch (latched_.command) {
+    case Command::kDemo:
+      return demo(now);
+    case Command::kIdle:
+      if (home_wanted_ && is_enabled_ && !home_finished_) {
+        home(now);
+      } else {
+        idle();
+      }
+      demo_leg_ = DemoLeg::kWaiting;
+      break;
+    case Command::kEnable:
+      homing_.reset();
+      home_wanted_ = false;
+      is_enabled_ = true;
+      break;
+    case Command::kDisable:
+      home_wanted_ = false;
+      is_enabled_ = false;
+      break;
+    case Command::kClearError:
+      home_wanted_ = false;
+      homing_.reset();
+      break;
+    case Command::kHome:
+      if (!is_enabled_) break;
+      home_wanted_ = true;
+      home_finished_ = false;
+      home(now);
+      break;
+    case Command::kJog:
+      if (!is_enabled_) break;
+      stop_homing();
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        joints_[j].stepper.set_speed(static_cast<float>(latched_.speed[j].value));
+        joints_[j].run_speed(now);
+      }
+      break;
+    case Command::kGoTo:
+      if (!is_enabled_) break;
+      stop_homing();
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        joints_[j].go_to(now, latched_.position[j], latched_.speed[j]);
+      }
+      break;
+  }
+  return Next::kCommunicate;  // any other code: nothing steps, set speeds stay as they are
+}
+
+void Board::idle() noexcept {
+  if (home_wanted_) {
+    // parol6.home.idle-after: the first idle pass after homing only drops the request.
+    if (home_finished_) {
+      home_wanted_ = false;
+      is_settled_ = false;
+    }
+    return;
+  }
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    joints_[j].stepper.set_speed(static_cast<float>(latched_.speed[j].value));
+  }
+}
+
+void Board::home(Micros now) noexcept {
+  const auto change = homing_.pass(joints_, now);
+  is_settled_ = change == Homing::Change::kNone;
+  if (change == Homing::Change::kFinished) home_finished_ = true;
+}
+
+void Board::stop_homing() noexcept {
+  home_wanted_ = false;
+  home_finished_ = true;
+}
+
+/// parol6.demo: also runs while disabled. A leg that ends lets the next one begin in the same pass.
+Board::Next Board::demo(Micros now) noexcept {
+  if (is_asleep_) {
+    is_asleep_ = false;
+    demo_leg_ = DemoLeg::kBack;
+  }
+  if (demo_leg_ == DemoLeg::kWaiting) {
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      auto& stepper = joints_[j].stepper;
+      stepper.set_max_speed(kDemoTable[j].max_speed_and_acceleration);
+      stepper.set_acceleration(StepsPerSecond2{kDemoTable[j].max_speed_and_acceleration});
+      stepper.move_to(kDemoTable[j].out);
+    }
+    demo_leg_ = DemoLeg::kOut;
+  }
+  if (demo_leg_ == DemoLeg::kOut && !run_all(now)) {
+    for (std::size_t j = 0; j < kJointCount; ++j) joints_[j].stepper.move_to(kDemoTable[j].back);
+    is_asleep_ = true;
+    is_settled_ = false;
+    return Next::kSleep;
+  }
+  if (demo_leg_ == DemoLeg::kBack && !run_all(now)) {
+    demo_leg_ = DemoLeg::kDone;
+    is_settled_ = false;
+  }
+  return Next::kCommunicate;
+}
+
+/// Runs every joint on its ramp. False if all have arrived.
+bool Board::run_all(Micros now) noexcept {
+  for (auto& joint : joints_) joint.run(now);
+  return std::ranges::any_of(joints_,
+                             [](const Joint& joint) { return joint.stepper.is_running(); });
+}
+
+void Board::communicate(std::int64_t pass) {
+  if (!can_waiting_.empty()) {
+    take_gripper_answer(can_waiting_.front());
+    can_waiting_.erase(can_waiting_.begin());
+  }
+  auto rest = Bytes{bytes_waiting_};
+  while (!rest.empty()) {
+    const auto step = receiver_.step(rest);
+    rest = rest.subspan(step.used);
+    if (step.accepted) accept(pass);
+  }
+  bytes_waiting_.clear();
+}
+
+void Board::accept(std::int64_t pass) {
+  const auto timer_now = timer(pass);
+  const auto interval = static_cast<std::uint16_t>(timer_now - timer_at_frame_);
+  timer_at_frame_ = timer_now;
+  if (!std::ranges::equal(receiver_.body(), latched_body_)) {
+    std::ranges::copy(receiver_.body(), latched_body_.begin());
+    latched_ = decode_command(latched_body_);
+    outlook_ = Outlook::kOpen;
+  }
+  send_gripper_frame(pass);
+  send_telemetry(pass, interval);
+}
+
+/// Exactly one CAN frame for each accepted serial frame. What arrives together with a calibration
+/// or a clear-error counts as sent although it was not (parol6.gripper.forgotten-set-point).
+void Board::send_gripper_frame(std::int64_t pass) {
+  constexpr std::uint8_t kMove = 0;
+  constexpr std::uint8_t kCalibrate = 1;
+  constexpr std::uint8_t kClearError = 2;
+  const auto& wanted = latched_.gripper;
+  const auto is_same = [](GripperSetPoint a, const GripperSetPoint& b) {
+    a.mode = b.mode;
+    return a == b;
+  };
+  CanFrame frame;
+  if (wanted.mode == kCalibrate) {
+    frame.id = can_id(wanted.id, GripperCan::kCalibrate);
+  } else if (wanted.mode == kClearError) {
+    frame.id = can_id(wanted.id, GripperCan::kClearError);
+  } else {
+    frame.id = can_id(wanted.id, GripperCan::kSetPoint);
+    if (wanted.mode != kMove || !is_same(wanted, gripper_sent_)) {
+      frame.size = 5;
+      frame.data[0] = static_cast<std::byte>(wanted.position);
+      frame.data[1] = static_cast<std::byte>(wanted.speed);
+      store_i16_be(std::span{frame.data}.subspan<2, 2>(), wanted.current.value);
+      frame.data[4] = static_cast<std::byte>(wanted.command);
+    }
+  }
+  gripper_sent_ = wanted;
+  sent_.emplace_back(instant(pass), frame);
+}
+
+void Board::take_gripper_answer(const CanFrame& frame) noexcept {
+  constexpr std::uint8_t kAnswerSize = 4;
+  const bool is_for_us = can_command(frame.id) == GripperCan::kAnswer &&
+                         frame.size == kAnswerSize && can_node(frame.id) == latched_.gripper.id;
+  if (!is_for_us) return;
+  const auto data = std::span{frame.data};
+  gripper_.position = std::to_integer<std::int16_t>(data[0]);
+  gripper_.current = Milliamperes{load_i16_be(data.subspan<1, 2>())};
+  gripper_.status = std::to_integer<std::uint8_t>(data[3]);
+}
+
+void Board::send_telemetry(std::int64_t pass, std::uint16_t interval) {
+  const auto level_flag = [](Level level, std::uint8_t mask) {
+    return static_cast<std::uint8_t>(level == Level::kHigh ? mask : 0);
+  };
+  TelemetryFrame frame;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    frame.position[j] = joints_[j].position();
+    frame.speed[j] = StepsPerSecond{static_cast<std::int32_t>(joints_[j].stepper.speed())};
+  }
+  frame.homed = homing_.homed() | kSpareFlags;
+  frame.io = level_flag(inputs_.in1, io_flag::kIn1) | level_flag(inputs_.in2, io_flag::kIn2) |
+             (latched_.in_out & (io_flag::kOut1 | io_flag::kOut2)) |
+             level_flag(inputs_.estop, io_flag::kEstopReleased) | io_flag::kSpare;
+  frame.temperature_error = kSpareFlags;
+  frame.position_error = kSpareFlags;
+  frame.timing = interval;
+  frame.timeout_error = kTimeoutError;
+  frame.echo = latched_.command;
+  frame.gripper = gripper_;
+  sent_.emplace_back(instant(pass), encode(frame));
+}
+
+}  // namespace armjig::parol6

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emulators/replay/replay.hpp"
+#include "harness/capture/trace.hpp"
+#include "harness/core/error.hpp"
+
+namespace armjig::parol6 {
+
+/// Drives a fresh board with the stimulus of a recording, on the plant and the clocks that its
+/// header names, and answers what the board sent. CAN frames are among it only if the recording has
+/// them.
+[[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
+
+}  // namespace armjig::parol6

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/replay/replay.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "emulators/replay/demo.hpp"
+#include "emulators/replay/parol6.hpp"
+
+namespace armjig {
+namespace {
+
+constexpr std::array kReplays{
+    ReplayEntry{"demo", demo::replay},
+    ReplayEntry{"parol6", parol6::replay},
+};
+
+}  // namespace
+
+std::span<const ReplayEntry> replays() noexcept { return kReplays; }
+
+Outcome<std::optional<TraceDifference>> verify(const Trace& trace) {
+  const auto entry = std::ranges::find(kReplays, trace.device, &ReplayEntry::device);
+  if (entry == kReplays.end()) {
+    return problem(ErrorCode::kUnknownDevice, trace.path,
+                   "no emulator replays '" + trace.device + "' yet");
+  }
+  const auto replayed = entry->replay(trace);
+  if (!replayed) return tl::unexpected{replayed.error()};
+  return first_difference(replayed->recorded, replayed->actual);
+}
+
+}  // namespace armjig

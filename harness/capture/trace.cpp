@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/capture/trace.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "harness/core/hex.hpp"
+#include "harness/wire/dissector.hpp"
+
+namespace armjig {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Numbers in traces are whole; this keeps sums with them inside 64 bits.
+constexpr std::int64_t kLatestMicroseconds = INT64_C(9'000'000'000'000'000);
+
+/// The value of an optional key, in the type that the format gives it. What has another type makes
+/// `ok` false.
+class LineReader {
+ public:
+  explicit LineReader(const Json& line) : line_{line} {}
+
+  std::int64_t integer(const char* key, std::int64_t least, std::int64_t most) {
+    const auto found = line_.find(key);
+    if (found == line_.end()) return 0;
+    const bool fits = found->is_number_integer() && !is_too_large(*found);
+    const auto value = fits ? found->get<std::int64_t>() : 0;
+    if (!fits || value < least || value > most) complain(key, "is not a whole number in range");
+    return value;
+  }
+
+  std::string text(const char* key) {
+    const auto found = line_.find(key);
+    if (found == line_.end()) return {};
+    if (!found->is_string()) {
+      complain(key, "is not a string");
+      return {};
+    }
+    return found->get<std::string>();
+  }
+
+  std::vector<std::byte> bytes(const char* key) {
+    auto bytes = from_hex(text(key));
+    if (bytes) return *std::move(bytes);
+    complain(key, describe(bytes.error().code));
+    return {};
+  }
+
+  void require(const char* key) {
+    if (!line_.contains(key)) complain(key, "is missing");
+  }
+
+  /// What is wrong with the line; empty if nothing is.
+  [[nodiscard]] const std::string& complaint() const noexcept { return complaint_; }
+
+ private:
+  static bool is_too_large(const Json& number) {
+    return number.is_number_unsigned() && number.get<std::uint64_t>() > INT64_MAX;
+  }
+  void complain(const char* key, std::string_view what) {
+    if (complaint_.empty()) complaint_ = fmt::format("\"{}\" {}", key, what);
+  }
+
+  const Json& line_;
+  std::string complaint_;
+};
+
+auto malformed(const std::string& path, std::size_t line, std::string what) {
+  return problem(ErrorCode::kMalformed, fmt::format("{}:{}", path, line), std::move(what));
+}
+
+Json parse_object(std::string_view line) {
+  auto json = Json::parse(line, nullptr, /*allow_exceptions=*/false);
+  return json.is_object() ? json : Json{};
+}
+
+Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
+                                std::string_view line) {
+  const auto json = parse_object(line);
+  if (json.is_null()) return malformed(path, number, "the line is not a JSON object");
+  LineReader reader{json};
+  const bool is_in_milliseconds = json.contains("t_ms");
+  if (!is_in_milliseconds) reader.require("t_us");
+  reader.require("dir");
+  TraceEvent event;
+  event.line = number;
+  event.time =
+      at(is_in_milliseconds
+             ? Duration{std::chrono::milliseconds{
+                   reader.integer("t_ms", 0, kLatestMicroseconds / 1000)}}
+             : Duration{std::chrono::microseconds{reader.integer("t_us", 0, kLatestMicroseconds)}});
+  event.dir = reader.text("dir");
+  event.bytes = reader.bytes("hex");
+  event.id = static_cast<std::uint32_t>(reader.integer("id", 0, UINT32_MAX));
+  event.name = reader.text("name");
+  if (json.contains("value") && json["value"].is_number_integer()) {
+    event.value = reader.integer("value", INT64_MIN, INT64_MAX);
+  }
+  if (!reader.complaint().empty()) return malformed(path, number, reader.complaint());
+  return event;
+}
+
+/// Cuts lines off the front of a text; a carriage return before the line end goes with it.
+std::string_view next_line(std::string_view& rest) {
+  const auto end = rest.find('\n');
+  auto line = rest.substr(0, end);
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+bool is_same(const TraceEvent& a, const TraceEvent& b) {
+  return a.dir == b.dir && a.time == b.time && a.id == b.id && a.bytes == b.bytes;
+}
+
+std::string describe_event(const std::optional<TraceEvent>& event) {
+  if (!event) return "nothing";
+  const auto id = event->dir.starts_with("can_") ? fmt::format(" id {:03X}", event->id) : "";
+  return fmt::format("{:>10} us {}{} {}", microseconds(event->time), event->dir, id,
+                     to_hex_dump(event->bytes));
+}
+
+/// The only message in the bytes that a device sent, if they are just one.
+std::optional<Message> sole_message(std::string_view device, const TraceEvent& event) {
+  const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
+  if (entry == dissectors().end() || event.dir != "from_device") return std::nullopt;
+  std::vector<Message> messages;
+  const auto dissector = entry->make();
+  dissector->feed(Direction::kFromDevice, event.time, event.bytes, messages);
+  dissector->finish(messages);
+  if (messages.size() != 1) return std::nullopt;
+  return std::move(messages.front());
+}
+
+}  // namespace
+
+Outcome<Trace> parse_trace(std::string path, std::string_view text) {
+  Trace trace;
+  trace.path = std::move(path);
+  trace.header = next_line(text);
+  const auto header = parse_object(trace.header);
+  if (header.is_null() || header.value("format", Json{}) != "golden-trace/1") {
+    return malformed(trace.path, 1, R"(the first line is not a "golden-trace/1" header)");
+  }
+  LineReader reader{header};
+  trace.device = reader.text("device");
+  if (trace.device.empty()) return malformed(trace.path, 1, "\"device\" is missing");
+  std::size_t number = 1;
+  while (!text.empty()) {
+    ++number;
+    const auto line = next_line(text);
+    if (line.empty()) continue;
+    auto event = parse_event(trace.path, number, line);
+    if (!event) return tl::unexpected{std::move(event).error()};
+    if (!trace.events.empty() && event->time < trace.events.back().time) {
+      return malformed(trace.path, number, "the time runs backwards");
+    }
+    trace.events.push_back(*std::move(event));
+  }
+  return trace;
+}
+
+Outcome<Trace> read_trace(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return problem(ErrorCode::kCannotRead, path, "it is a folder");
+  }
+  errno = 0;
+  std::ifstream in{path, std::ios::binary};
+  if (!in) return problem(error_from_errno(errno).code, path, "check the path");
+  const std::string text{std::istreambuf_iterator<char>{in}, {}};
+  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "check the file");
+  return parse_trace(path, text);
+}
+
+Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& paths) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  for (const auto& path : paths) {
+    std::error_code error;
+    if (!fs::exists(path, error)) return problem(ErrorCode::kNotFound, path, "check the path");
+    if (!fs::is_directory(path, error)) {
+      files.push_back(path);
+      continue;
+    }
+    const auto first = static_cast<std::ptrdiff_t>(files.size());
+    for (fs::recursive_directory_iterator it{path, error}, end; !error && it != end;
+         it.increment(error)) {
+      std::error_code ignored;
+      if (it->path().extension() == ".jsonl" && it->is_regular_file(ignored)) {
+        files.push_back(it->path().string());
+      }
+    }
+    if (error) return problem(error_from_errno(error.value()).code, path, "check its permissions");
+    std::sort(files.begin() + first, files.end());
+  }
+  return files;
+}
+
+std::optional<TraceDifference> first_difference(const std::vector<TraceEvent>& expected,
+                                                const std::vector<TraceEvent>& actual) {
+  const auto [e, a] = std::ranges::mismatch(expected, actual, is_same);
+  if (e == expected.end() && a == actual.end()) return std::nullopt;
+  TraceDifference difference;
+  if (e != expected.end()) difference.expected = *e;
+  if (a != actual.end()) difference.actual = *a;
+  return difference;
+}
+
+std::string describe(const TraceDifference& difference, const Trace& trace) {
+  const auto& [expected, actual] = difference;
+  auto text = expected ? fmt::format("  {}:{}: differs at {} us\n", trace.path, expected->line,
+                                     microseconds(expected->time))
+                       : fmt::format("  {}: behind the last recorded event\n", trace.path);
+  text += fmt::format("  expected {}\n", describe_event(expected));
+  text += fmt::format("  actual   {}\n", describe_event(actual));
+  if (!expected || !actual) return text;
+  if (expected->time != actual->time) {
+    text += fmt::format("  time: expected {} us, got {} us\n", microseconds(expected->time),
+                        microseconds(actual->time));
+  }
+  const auto wanted = sole_message(trace.device, *expected);
+  const auto got = sole_message(trace.device, *actual);
+  if (!wanted || !got) return text;
+  for (const auto& field : field_differences(wanted->fields, wanted->raw, got->raw)) {
+    text += fmt::format("  {}\n", field);
+  }
+  return text;
+}
+
+}  // namespace armjig

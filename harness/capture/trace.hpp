@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/error.hpp"
+#include "harness/core/time.hpp"
+
+namespace armjig {
+
+/// One line of a `golden-trace/1` file behind the header. Keys that a line does not have stay at
+/// their defaults; keys that nobody knows are passed over.
+struct TraceEvent {
+  std::size_t line{};  ///< in the file, from 1
+  Instant time{};
+  std::string dir;  ///< `to_device`, `from_device`, ...: what happened
+  std::vector<std::byte> bytes;
+  std::uint32_t id{};  ///< of a CAN frame
+  std::string name;    ///< of an input
+  std::int64_t value{};
+};
+
+/// A recording as text: JSON Lines, first a header, then events in order of time.
+struct Trace {
+  std::string path;
+  std::string device;
+  std::string header;  ///< the first line, JSON
+  std::vector<TraceEvent> events;
+};
+
+/// Reads a recording. Problems name `path:line`.
+[[nodiscard]] Outcome<Trace> read_trace(const std::string& path);
+
+/// The same from text in memory; `path` is for messages.
+[[nodiscard]] Outcome<Trace> parse_trace(std::string path, std::string_view text);
+
+/// The files named `*.jsonl` under each of `paths`, sorted within each; a path that is a file is
+/// taken whatever its name.
+[[nodiscard]] Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& paths);
+
+/// Where what an emulator did first departs from what was recorded.
+struct TraceDifference {
+  std::optional<TraceEvent> expected;  ///< none: the emulator sent something extra
+  std::optional<TraceEvent> actual;    ///< none: the emulator sent nothing more
+};
+
+/// Compares events one by one: kind, time, identifier and bytes.
+[[nodiscard]] std::optional<TraceDifference> first_difference(
+    const std::vector<TraceEvent>& expected, const std::vector<TraceEvent>& actual);
+
+/// The difference for people: line, time, bytes both ways, the fields that differ. Several lines,
+/// indented.
+[[nodiscard]] std::string describe(const TraceDifference& difference, const Trace& trace);
+
+}  // namespace armjig

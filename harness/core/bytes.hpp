@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace armjig {
+
+using Bytes = std::span<const std::byte>;
+
+/// Reads a signed 24-bit big-endian field.
+[[nodiscard]] constexpr std::int32_t load_i24_be(std::span<const std::byte, 3> in) noexcept {
+  const auto raw = std::to_integer<std::uint32_t>(in[0]) << 24 |
+                   std::to_integer<std::uint32_t>(in[1]) << 16 |
+                   std::to_integer<std::uint32_t>(in[2]) << 8;
+  return static_cast<std::int32_t>(raw) >> 8;  // C++20: right shift copies the sign
+}
+
+/// Writes the low 24 bits of `value`, most significant byte first.
+constexpr void store_i24_be(std::span<std::byte, 3> out, std::int32_t value) noexcept {
+  const auto raw = static_cast<std::uint32_t>(value);
+  out[0] = static_cast<std::byte>(raw >> 16);
+  out[1] = static_cast<std::byte>(raw >> 8);
+  out[2] = static_cast<std::byte>(raw);
+}
+
+/// Reads an unsigned 16-bit big-endian field.
+[[nodiscard]] constexpr std::uint16_t load_u16_be(std::span<const std::byte, 2> in) noexcept {
+  return static_cast<std::uint16_t>(std::to_integer<unsigned>(in[0]) << 8 |
+                                    std::to_integer<unsigned>(in[1]));
+}
+
+/// Reads a signed 16-bit big-endian field.
+[[nodiscard]] constexpr std::int16_t load_i16_be(std::span<const std::byte, 2> in) noexcept {
+  return static_cast<std::int16_t>(load_u16_be(in));
+}
+
+/// Writes 16 bits, most significant byte first; a signed value keeps its two's complement.
+constexpr void store_u16_be(std::span<std::byte, 2> out, std::uint16_t value) noexcept {
+  out[0] = static_cast<std::byte>(value >> 8);
+  out[1] = static_cast<std::byte>(value);
+}
+
+constexpr void store_i16_be(std::span<std::byte, 2> out, std::int16_t value) noexcept {
+  store_u16_be(out, static_cast<std::uint16_t>(value));
+}
+
+/// The `Size` bytes of `in` from `offset` on. Requires `offset + Size <= in.size()`.
+template <std::size_t Size>
+[[nodiscard]] constexpr auto slice(std::span<const std::byte> in, std::size_t offset) noexcept {
+  return in.subspan(offset).template first<Size>();
+}
+
+template <std::size_t Size>
+[[nodiscard]] constexpr auto slice(std::span<std::byte> in, std::size_t offset) noexcept {
+  return in.subspan(offset).template first<Size>();
+}
+
+}  // namespace armjig

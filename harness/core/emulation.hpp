@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "harness/core/bytes.hpp"
+#include "harness/core/time.hpp"
+
+/// What an emulated device looks like to whatever carries its bytes. There is no common base class:
+/// these are concepts, and the device stays a plain value.
+namespace armjig {
+
+/// Bytes that left a device at `time`.
+struct SentBytes {
+  Instant time{};
+  std::vector<std::byte> bytes;
+};
+
+/// A device on a byte stream. Times that it is given never decrease. `receive` takes bytes that
+/// become readable at a time, `advance_to` does everything up to and including a time, `next_event`
+/// tells when something may be sent if nothing more comes.
+template <class Device>
+concept EmulatedStream =
+    std::copyable<Device> && requires(Device device, const Device& constant, Instant time) {
+      device.receive(time, Bytes{});
+      device.advance_to(time);
+      { constant.next_event() } -> std::same_as<std::optional<Instant>>;
+      { constant.sent() } -> std::convertible_to<std::span<const SentBytes>>;
+      device.clear_sent();
+    };
+
+/// What a server does with the connection that it has.
+struct SessionEvent {
+  enum class Kind : std::uint8_t { kData, kEnd, kReset };
+
+  Instant time{};
+  Kind kind{};
+  std::vector<std::byte> bytes;  ///< of `kData`
+};
+
+/// A device that serves one connection at a time.
+template <class Device>
+concept EmulatedServer =
+    std::copyable<Device> && requires(Device device, const Device& constant, Instant time) {
+      device.connect(time);
+      device.receive(time, Bytes{});
+      device.half_close(time);
+      device.close(time);
+      device.reset(time);
+      device.advance_to(time);
+      { constant.next_event() } -> std::same_as<std::optional<Instant>>;
+      { constant.sent() } -> std::convertible_to<std::span<const SessionEvent>>;
+      device.clear_sent();
+    };
+
+/// A device at the other end of an I2C bus, byte by byte. `write` tells whether it acknowledges.
+template <class Device>
+concept EmulatedBusDevice = std::copyable<Device> && requires(Device device, Instant time) {
+  { device.acknowledges(std::uint8_t{}) } -> std::same_as<bool>;
+  { device.write(time, std::byte{}) } -> std::same_as<bool>;
+  { device.read(time) } -> std::same_as<std::byte>;
+};
+
+}  // namespace armjig

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "harness/core/bytes.hpp"
+#include "harness/core/error.hpp"
+#include "harness/core/time.hpp"
+
+namespace armjig {
+
+/// A seven-bit I2C address.
+struct BusAddress {
+  std::uint8_t value{};
+
+  friend auto operator<=>(const BusAddress&, const BusAddress&) = default;
+};
+
+enum class Ack : std::uint8_t { kAck, kNack };
+
+/// An I2C bus seen from its master, one bus operation a call, so that repeated starts, short reads
+/// and refused bytes can be said. Time as in `StreamPort`; on a virtual clock every operation takes
+/// as long as its bits do.
+class BusPort {
+ public:
+  enum class Access : std::uint8_t { kWrite, kRead };
+
+  BusPort() = default;
+  BusPort(const BusPort&) = delete;
+  BusPort& operator=(const BusPort&) = delete;
+  virtual ~BusPort() = default;
+
+  /// Start condition (a repeated one inside a transaction), then the address. `kNack`: nobody is
+  /// there. Errors: `kBusy` (arbitration lost, a line held down), `kTimedOut`.
+  [[nodiscard]] virtual Result<Ack> start(BusAddress address, Access access) = 0;
+
+  /// Writes one byte; the answer is the device's.
+  [[nodiscard]] virtual Result<Ack> write(std::byte byte) = 0;
+
+  /// Reads one byte and answers it with `reply`.
+  [[nodiscard]] virtual Result<std::byte> read(Ack reply) = 0;
+
+  /// Stop condition.
+  virtual Result<void> stop() = 0;
+
+  /// Lets time pass.
+  virtual void wait_until(Instant time) = 0;
+  [[nodiscard]] virtual Instant now() const = 0;
+};
+
+}  // namespace armjig

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "harness/core/emulation.hpp"
+#include "harness/link/stream_port.hpp"
+
+namespace armjig {
+
+/// A stream to an emulated device in the same process, on virtual time: reading advances the device
+/// to whatever comes first, its next bytes or the deadline.
+template <EmulatedStream Device>
+class MemoryStream final : public StreamPort {
+ public:
+  explicit MemoryStream(Device device) : device_{std::move(device)} {}
+
+  Result<void> write(Bytes bytes) override {
+    device_.receive(now_, bytes);
+    return {};
+  }
+
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
+    while (unread_.empty()) {
+      const auto event = device_.next_event();
+      const bool is_due = event && *event <= deadline;
+      now_ = std::max(now_, is_due ? *event : deadline);
+      device_.advance_to(now_);
+      for (const auto& sent : device_.sent()) {
+        unread_.insert(unread_.end(), sent.bytes.begin(), sent.bytes.end());
+      }
+      device_.clear_sent();
+      if (!is_due && unread_.empty()) return 0;
+    }
+    const auto taken = std::min(into.size(), unread_.size());
+    std::copy_n(unread_.begin(), taken, into.begin());
+    unread_.erase(unread_.begin(), unread_.begin() + static_cast<std::ptrdiff_t>(taken));
+    return taken;
+  }
+
+  [[nodiscard]] Instant now() const override { return now_; }
+
+  /// To look at the device and to touch it. Its time is `now()`.
+  [[nodiscard]] Device& device() noexcept { return device_; }
+
+ private:
+  Device device_;
+  Instant now_{};
+  std::vector<std::byte> unread_;
+};
+
+}  // namespace armjig

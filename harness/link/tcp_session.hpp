@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "harness/core/error.hpp"
+#include "harness/link/session_port.hpp"
+
+namespace armjig {
+
+/// Connections to the server at `HOST:PORT` (an IPv6 address in brackets). Nothing is connected
+/// yet. Time is monotonic since making. Each `send` is one write without delay, hence one segment
+/// while it is small and the server reads; it gives up with `kTimedOut` when the server takes
+/// nothing for two seconds. After the server's end `receive` keeps saying `kEnd`. Problems:
+/// `kBadTarget`.
+[[nodiscard]] Outcome<std::unique_ptr<SessionPort>> make_tcp_session(std::string_view address);
+
+}  // namespace armjig

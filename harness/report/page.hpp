@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+/// The parts of the HTML page that are the same in every report. Everything is inline: the page
+/// must open from a CI archive, without a network, and years later. Without its script, as where a
+/// CI server forbids it, all is still there to be read.
+namespace armjig::page {
+
+/// Verdicts set `--c`, series `--s`; a reader without colours has the words and the dashes.
+inline constexpr std::string_view kStyle = R"css(
+:root { color-scheme: light dark;
+  --paper: light-dark(#f6f8fa, #0e1218); --card: light-dark(#fff, #161b23);
+  --sunk: light-dark(#f3f5f8, #10151c); --ink: light-dark(#1a2330, #e5eaf1);
+  --soft: light-dark(#566274, #9ba8b9); --line: light-dark(#dbe1e9, #2b3440);
+  --pass: light-dark(#14703a, #57cb8b); --fail: light-dark(#b8211b, #ff8a82);
+  --deviation: light-dark(#825400, #e3b454); --flaky: light-dark(#a83a00, #ff9c5b);
+  --error: light-dark(#7a2fb5, #cba0f5); --unclear: light-dark(#2459a8, #85b5f8);
+  --mono: ui-monospace, SFMono-Regular, Menlo, Consolas, "DejaVu Sans Mono", monospace; }
+:root[data-theme=light] { color-scheme: light; }
+:root[data-theme=dark] { color-scheme: dark; }
+* { box-sizing: border-box; }
+[hidden] { display: none !important; }
+body { margin: 0 auto; max-width: 76rem; padding: 1.75rem 1.5rem 4rem; background: var(--paper);
+  color: var(--ink); font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans",
+  "DejaVu Sans", sans-serif; overflow-wrap: anywhere; -webkit-text-size-adjust: 100%; }
+h1, h2, h3, p, dl, dd, ul, figure, pre { margin: 0; padding: 0; }
+h1 { font-size: 1.6rem; line-height: 1.25; letter-spacing: -.01em; text-wrap: balance; }
+h2 { font-size: 1.2rem; margin: 2.5rem 0 .75rem; }
+h3 { font: 600 .9rem/1.4 var(--mono); }
+a { color: inherit; }
+:focus-visible { outline: 2px solid var(--unclear); outline-offset: 2px; }
+button, input { font: inherit; color: inherit; background: var(--card);
+  border: 1px solid var(--line); border-radius: .5rem; padding: .3rem .7rem; min-height: 2.25rem; }
+button { cursor: pointer; white-space: nowrap; }
+button:hover { border-color: var(--soft); }
+:root:not(.js) :is(.tools, #theme) { display: none; }
+
+.pass { --c: var(--pass); } .fail { --c: var(--fail); } .flaky { --c: var(--flaky); }
+.deviation { --c: var(--deviation); } .error { --c: var(--error); }
+.skipped { --c: var(--soft); } .inconclusive { --c: var(--unclear); }
+.card { background: var(--card); border: 1px solid var(--line); border-radius: .75rem; }
+
+.top { display: flex; gap: 1rem; align-items: flex-start; justify-content: space-between; }
+.outcome { margin: 1.25rem 0; padding: 1rem 1.25rem 1.1rem 1.5rem;
+  box-shadow: inset .35rem 0 var(--c); }
+.outcome strong { display: block; font-size: 1.15rem; color: var(--c); }
+.shares { display: flex; gap: 2px; height: .5rem; margin-top: .75rem; border-radius: 1rem;
+  overflow: hidden; }
+.shares span { background: var(--c); min-width: 3px; }
+.facts { display: flex; flex-wrap: wrap; gap: .75rem 2.5rem; }
+dt { color: var(--soft); font-size: .8rem; }
+.jumps { display: flex; flex-wrap: wrap; gap: .25rem 1rem; margin-top: 1.25rem; padding: 0;
+  list-style: none; }
+
+.tools { position: sticky; top: 0; z-index: 1; display: flex; flex-wrap: wrap; gap: .5rem;
+  align-items: center; margin: 0 -1.5rem 1rem; padding: .6rem 1.5rem .75rem;
+  background: var(--paper); border-bottom: 1px solid var(--line); }
+.tools input { flex: 1 1 14rem; min-width: 0; }
+.filters { display: flex; gap: .4rem; }
+.filters button { color: var(--c); border-radius: 2rem; }
+.filters button[aria-pressed=true] { background: var(--c); border-color: var(--c);
+  color: var(--card); }
+.heading { display: flex; flex-wrap: wrap; gap: 0 1rem; align-items: baseline;
+  margin: 2.5rem 0 .35rem; }
+.heading h2 { margin: 0; }
+.shown { color: var(--soft); }
+
+.topic { margin: 0 0 1.25rem; overflow: clip; }
+.topic > header { display: flex; gap: 1rem; justify-content: space-between; padding: .55rem 1rem;
+  background: var(--sunk); border-bottom: 1px solid var(--line); }
+.topic > header span { color: var(--soft); font-size: .85rem; white-space: nowrap; }
+.row + .row { border-top: 1px solid var(--line); }
+.row > summary { display: grid; grid-template-columns: 7.6rem minmax(0, 20rem) minmax(0, 1fr) auto .6rem;
+  gap: .15rem 1rem; align-items: baseline; padding: .6rem 1rem; cursor: pointer; list-style: none; }
+.row > summary::-webkit-details-marker { display: none; }
+.row > summary::after { content: "\203A" / ""; color: var(--soft); font-size: 1.2rem;
+  line-height: 1; justify-self: center; transition: rotate .12s; }
+.row[open] > summary::after { rotate: 90deg; }
+.row > summary:hover { background: var(--sunk); }
+.row > summary:focus-visible { outline-offset: -2px; }
+.verdict { justify-self: start; padding: .1rem .55rem; border-radius: 1rem; color: var(--c);
+  background: color-mix(in srgb, var(--c) 13%, transparent); font-weight: 650; font-size: .72rem;
+  letter-spacing: .04em; text-transform: uppercase; white-space: nowrap; }
+.name { font: .87rem/1.5 var(--mono); }
+.summary { color: var(--soft); }
+.reason::before { content: "\2013\00A0"; }
+.time { color: var(--soft); font-size: .82rem; font-variant-numeric: tabular-nums; }
+.row[open] > summary .summary { color: inherit; }
+.body { padding: .25rem 1rem 1.1rem; border-left: .2rem solid var(--c); margin: 0 0 .75rem 1rem;
+  display: grid; grid-template-columns: minmax(0, 1fr); gap: .8rem; }
+.body dl { display: grid; grid-template-columns: 6.6rem minmax(0, 1fr); gap: .3rem 1rem; }
+.body dt { padding-top: .1rem; }
+:is(.fail, .flaky, .error) .got { color: var(--c); }
+.evidence > summary { cursor: pointer; color: var(--soft); font-size: .85rem; }
+pre { margin-top: .4rem; padding: .75rem .9rem; background: var(--sunk);
+  border: 1px solid var(--line); border-radius: .5rem; overflow-x: auto; overflow-wrap: normal;
+  font: .8rem/1.55 var(--mono); }
+.again { color: var(--soft); font-size: .85rem; }
+.again pre { color: var(--ink); white-space: pre-wrap; overflow-wrap: anywhere; user-select: all; }
+
+.words { max-width: 48rem; white-space: pre-line; margin-bottom: 1rem; }
+.wide { overflow-x: auto; margin-bottom: 1rem; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums;
+  overflow-wrap: normal; }
+th, td { padding: .45rem 1rem; text-align: left; vertical-align: baseline; }
+:is(th, td):not(.number) { min-width: 8rem; }
+th { color: var(--soft); font-weight: 500; font-size: .85rem; background: var(--sunk); }
+tr + tr td, tbody td { border-top: 1px solid var(--line); }
+.number { text-align: right; white-space: nowrap; }
+
+.plot { padding: 1rem 1.75rem 1rem 1.25rem; margin-bottom: 1.25rem; break-inside: avoid; }
+figcaption { font-weight: 600; }
+.legend { display: flex; flex-wrap: wrap; gap: .1rem 1.25rem; margin-top: .25rem;
+  list-style: none; }
+.legend li { display: flex; gap: .45rem; align-items: center; font-size: .88rem; }
+.y-label, .x-label { color: var(--soft); font-size: .82rem; }
+.y-label { margin: .75rem 0 .6rem; }
+.x-label { text-align: right; }
+.axes > svg { display: block; }
+.axes svg { overflow: visible; }
+.grid line { stroke: var(--line); shape-rendering: crispEdges; }
+.ticks text { fill: var(--soft); font-size: 12px; font-variant-numeric: tabular-nums; }
+.ticks .x { text-anchor: middle; } .ticks .y { text-anchor: end; }
+.plot path { fill: none; stroke: var(--s); stroke-width: 1.75; stroke-linejoin: round;
+  stroke-linecap: round; vector-effect: non-scaling-stroke; }
+.plot .bars { fill: color-mix(in srgb, var(--s) 28%, transparent); stroke-width: 1; }
+.plot .dots { stroke-width: 5; }
+.s0, .s4 { --s: light-dark(#1f62c9, #78aefc); } .s1, .s5 { --s: light-dark(#c2500a, #ffa45c); }
+.s2, .s6 { --s: light-dark(#0d7d6c, #4fd1bb); } .s3, .s7 { --s: light-dark(#9c2f8f, #eb92df); }
+.line:is(.s4, .s5, .s6, .s7) { stroke-dasharray: 6 5; }
+.no-data { padding: 4rem 0; text-align: center; color: var(--soft); }
+footer { margin-top: 3rem; color: var(--soft); font-size: .82rem; }
+
+@media (max-width: 48rem) {
+  body { padding: 1.25rem 1rem 3rem; }
+  .tools { margin: 0 -1rem 1rem; padding: .6rem 1rem; }
+  .filters { flex-basis: 100%; order: 1; overflow-x: auto; margin: 0 -1rem; padding: 2px 1rem; }
+  .row > summary { grid-template-columns: 1fr auto .6rem; padding: .7rem .9rem; }
+  .row > summary .name, .row > summary .summary { grid-column: 1 / -1; }
+  .row > summary .time { grid-row: 1; grid-column: 2; }
+  .row > summary::after { grid-row: 1; grid-column: 3; }
+  .body { margin-left: .6rem; padding: .1rem .8rem .8rem; }
+  .body dl { grid-template-columns: 1fr; gap: 0; } .body dd { margin-bottom: .4rem; }
+  .plot { padding: .9rem 1.1rem .9rem .9rem; }
+  .ticks .odd { display: none; }
+}
+@media print {
+  :root { color-scheme: light !important; }
+  body { max-width: none; padding: 0; font-size: 10pt; background: #fff; }
+  .tools, #theme { display: none !important; }
+  .row { break-inside: avoid; } .topic { overflow: visible; }
+  pre { white-space: pre-wrap; overflow-wrap: anywhere; }
+}
+)css";
+
+inline constexpr std::string_view kScript = R"js(
+(() => {
+  const root = document.documentElement;
+  const theme = document.getElementById('theme');
+  const systemDark = matchMedia('(prefers-color-scheme: dark)');
+  const isDark = () => (root.dataset.theme ?? (systemDark.matches ? 'dark' : 'light')) === 'dark';
+  const nameTheme = () => { theme.textContent = isDark() ? 'Light' : 'Dark'; };
+  const memory = (use) => { try { return use(localStorage); } catch { return null; } };
+  const saved = memory((store) => store.getItem('armjig-theme'));
+  if (saved === 'dark' || saved === 'light') root.dataset.theme = saved;
+  theme.addEventListener('click', () => {
+    root.dataset.theme = isDark() ? 'light' : 'dark';
+    memory((store) => store.setItem('armjig-theme', root.dataset.theme));
+    nameTheme();
+  });
+  systemDark.addEventListener('change', nameTheme);
+  nameTheme();
+  root.classList.add('js');
+
+  const search = document.getElementById('search');
+  if (!search) return;
+  const rows = [...document.querySelectorAll('.row')];
+  const topics = [...document.querySelectorAll('.topic')];
+  const filters = [...document.querySelectorAll('.filters button')];
+  const unfold = document.getElementById('unfold');
+  const shown = document.getElementById('shown');
+  const texts = new Map(rows.map((row) => [row, row.textContent.toLowerCase()]));
+  const visible = () => rows.filter((row) => !row.hidden);
+  const nameUnfold = () => {
+    unfold.textContent = visible().some((row) => !row.open) ? 'Open all' : 'Close all';
+  };
+  const refresh = () => {
+    const words = search.value.toLowerCase().split(/\s+/);
+    const wanted = filters.filter((button) => button.ariaPressed === 'true')
+                          .map((button) => button.dataset.verdict);
+    for (const row of rows) {
+      const isWanted = wanted.length === 0 || wanted.includes(row.dataset.verdict);
+      row.hidden = !isWanted || !words.every((word) => texts.get(row).includes(word));
+    }
+    for (const topic of topics) topic.hidden = !topic.querySelector('.row:not([hidden])');
+    const count = visible().length;
+    shown.textContent = count === 0 ? 'Nothing matches.' : `${count} of ${rows.length} shown`;
+    nameUnfold();
+  };
+  search.addEventListener('input', refresh);
+  for (const button of filters) {
+    button.addEventListener('click', () => {
+      button.ariaPressed = button.ariaPressed === 'true' ? 'false' : 'true';
+      refresh();
+    });
+  }
+  unfold.addEventListener('click', () => {
+    const open = visible().some((row) => !row.open);
+    for (const row of visible()) row.open = open;
+  });
+  document.addEventListener('toggle', nameUnfold, true);
+  document.addEventListener('keydown', (event) => {
+    if (event.key === '/' && document.activeElement !== search) {
+      event.preventDefault();
+      search.focus();
+    } else if (event.key === 'Escape' && document.activeElement === search) {
+      search.value = '';
+      refresh();
+    }
+  });
+  addEventListener('beforeprint', () => { for (const row of visible()) row.open = true; });
+  refresh();
+})();
+)js";
+
+/// The policy lets no other script run, whatever a device wrote into the report.
+/// tests/integration/report_page_test.py fails if it does not fit the script, and says what would.
+inline constexpr std::string_view kScriptHash =
+    "sha256-S6nfaZkbTiZkmVVPP1WS+BL9Mj44Fd5AjDcza7U/poY=";
+
+inline constexpr const char* kTemplate = R"html(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src '{{{script_hash}}}'; img-src data:; base-uri 'none'; form-action 'none'">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<link rel="icon" href="data:,">
+<title>{{headline}}{{title}}</title>
+<style>{{{style}}}</style>
+</head>
+<body>
+<header>
+<div class="top"><h1>{{title}}</h1>
+<button id="theme" type="button" title="Switch colours">Dark</button></div>
+{{#has_rows}}
+<div class="outcome card {{outcome}}"><strong>{{conclusion}}</strong> {{counts}}
+<div class="shares" aria-hidden="true">
+{{#shares}}<span class="{{verdict}}" style="flex-grow: {{count}}"></span>{{/shares}}
+</div>
+</div>
+{{/has_rows}}
+<dl class="facts">
+{{#facts}}<div><dt>{{name}}</dt><dd>{{value}}</dd></div>
+{{/facts}}
+</dl>
+{{#has_jumps}}
+<nav aria-label="Parts of the report"><ul class="jumps">
+{{#has_rows}}<li><a href="#checks">Checks</a></li>{{/has_rows}}
+{{#sections}}<li><a href="#part-{{number}}">{{title}}</a></li>
+{{/sections}}
+</ul></nav>
+{{/has_jumps}}
+</header>
+<main>
+{{#has_rows}}
+<section id="checks" aria-labelledby="checks-title">
+<div class="heading"><h2 id="checks-title">Checks</h2>
+<p id="shown" class="shown" role="status"></p></div>
+<div class="tools" role="search">
+<input id="search" type="search" placeholder="Search  ( / )" aria-label="Search in all checks"
+ autocomplete="off" spellcheck="false">
+<div class="filters" role="group" aria-label="Only these verdicts">
+{{#shares}}
+<button type="button" class="{{verdict}}" data-verdict="{{verdict}}" aria-pressed="false">{{counted}}</button>
+{{/shares}}
+</div>
+<button id="unfold" type="button">Open all</button>
+</div>
+{{#topics}}
+<section class="topic card">
+<header><h3>{{name}}</h3><span>{{counts}}</span></header>
+{{#rows}}
+<details class="row {{verdict}}" data-verdict="{{verdict}}"{{#is_open}} open{{/is_open}}>
+<summary><span class="verdict">{{verdict}}</span> <span class="name">{{name}}</span>
+<span class="summary">{{summary}}{{#reason}} <span class="reason">{{text}}</span>{{/reason}}</span>
+<span class="time">{{time}}</span></summary>
+<div class="body">
+{{#has_details}}
+<dl>
+{{#details}}<dt>{{label}}</dt><dd class="{{label}}">{{text}}</dd>
+{{/details}}
+</dl>
+{{/has_details}}
+{{#evidence}}
+<details class="evidence"{{#is_short}} open{{/is_short}}>
+<summary>last exchange, {{lines}}</summary><pre>{{text}}</pre></details>
+{{/evidence}}
+{{#repeat}}<div class="again">again<pre>{{text}}</pre></div>{{/repeat}}
+</div>
+</details>
+{{/rows}}
+</section>
+{{/topics}}
+</section>
+{{/has_rows}}
+{{#sections}}
+<section aria-labelledby="part-{{number}}">
+<h2 id="part-{{number}}">{{title}}</h2>
+{{#text}}<p class="words">{{text}}</p>{{/text}}
+{{#has_table}}
+<div class="wide card"><table>
+<thead><tr>
+{{#columns}}<th scope="col"{{#is_number}} class="number"{{/is_number}}>{{cell}}</th>{{/columns}}
+</tr></thead>
+<tbody>
+{{#lines}}
+<tr>{{#cells}}<td{{#is_number}} class="number"{{/is_number}}>{{cell}}</td>{{/cells}}</tr>
+{{/lines}}
+</tbody></table></div>
+{{/has_table}}
+{{#plots}}{{{figure}}}{{/plots}}
+</section>
+{{/sections}}
+</main>
+<footer>armjig {{version}}{{#started}} &middot; started {{started}} UTC{{/started}}</footer>
+<script>{{{script}}}</script>
+</body>
+</html>
+)html";
+
+}  // namespace armjig::page

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/report/report.hpp"
+
+#include <cerrno>
+#include <fstream>
+
+namespace armjig {
+namespace {
+
+using Form = std::string (*)(const Report&);
+
+Outcome<void> write_form(const Report& report, const std::string& path, Form form) {
+  return path.empty() ? Outcome<void>{} : write_file(path, form(report));
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) noexcept {
+  constexpr std::array<std::string_view, kVerdictCount> kNames{
+      "pass", "deviation", "fail", "flaky", "skipped", "inconclusive", "error"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+std::string_view to_string(Level level) noexcept {
+  constexpr std::array<std::string_view, 3> kNames{"must", "should", "may"};
+  return kNames[static_cast<std::size_t>(level)];
+}
+
+std::array<std::size_t, kVerdictCount> Report::counts() const noexcept {
+  std::array<std::size_t, kVerdictCount> counts{};
+  for (const auto& row : rows) ++counts[static_cast<std::size_t>(row.verdict)];
+  return counts;
+}
+
+std::size_t Report::count(Verdict verdict) const noexcept {
+  return counts()[static_cast<std::size_t>(verdict)];
+}
+
+Conclusion conclusion_of(const Report& report) noexcept {
+  const auto any = [&report](Verdict verdict) { return report.count(verdict) > 0; };
+  if (any(Verdict::kFail) || any(Verdict::kFlaky)) return Conclusion::kFindings;
+  if (any(Verdict::kError)) return Conclusion::kRig;
+  if (any(Verdict::kPass) || any(Verdict::kDeviation)) return Conclusion::kPassed;
+  return any(Verdict::kInconclusive) ? Conclusion::kRig : Conclusion::kNothing;
+}
+
+std::string_view to_string(Conclusion conclusion) noexcept {
+  switch (conclusion) {
+    case Conclusion::kPassed:
+      return "passed";
+    case Conclusion::kFindings:
+      return "findings";
+    case Conclusion::kRig:
+      return "rig";
+    case Conclusion::kNothing:
+      break;
+  }
+  return "nothing";
+}
+
+Outcome<void> write_files(const Report& report, const ReportFiles& files) {
+  return write_form(report, files.json, to_json)
+      .and_then([&] { return write_form(report, files.html, to_html); })
+      .and_then([&] { return write_form(report, files.junit, to_junit); })
+      .and_then([&] { return write_form(report, files.sarif, to_sarif); });
+}
+
+Outcome<void> write_file(const std::string& path, std::string_view content) {
+  errno = 0;
+  std::ofstream out{path, std::ios::binary | std::ios::trunc};
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  if (out) return {};
+  return problem(ErrorCode::kCannotWrite, path, "check that the folder exists and is writable");
+}
+
+}  // namespace armjig

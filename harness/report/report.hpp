@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "harness/core/error.hpp"
+#include "harness/core/time.hpp"
+#include "harness/report/plot.hpp"
+
+namespace armjig {
+
+/// How a check ended.
+enum class Verdict : std::uint8_t {
+  kPass,
+  kDeviation,  ///< a known difference of the profile that was asked for
+  kFail,
+  kFlaky,         ///< not the same every time
+  kSkipped,       ///< not run, for a reason
+  kInconclusive,  ///< run, but it showed nothing
+  kError,         ///< the rig, not the device
+};
+inline constexpr std::size_t kVerdictCount = 7;
+
+[[nodiscard]] std::string_view to_string(Verdict verdict) noexcept;
+
+/// How much a requirement binds.
+enum class Level : std::uint8_t { kMust, kShould, kMay };
+
+[[nodiscard]] std::string_view to_string(Level level) noexcept;
+
+/// One check and what came of it. Any bytes may stand in the strings, a device may have sent them:
+/// each form of the report makes them harmless and keeps them readable.
+struct ReportRow {
+  Verdict verdict{};
+  std::string name;         ///< in words, dotted: device, topic, what; once in a report
+  std::string summary;      ///< one sentence
+  std::string requirement;  ///< the id of what was checked; empty: the row speaks for itself
+  Level level{};            ///< of the requirement
+  std::string demand;       ///< the requirement's sentence
+  std::string source;       ///< where the requirement is written or seen
+  std::string expected;
+  std::string actual;    ///< what came instead, or why it was skipped or showed nothing
+  std::string evidence;  ///< several lines: the last messages, decoded
+  std::string repeat;    ///< the command that does this again
+  Duration duration{};   ///< zero: not measured
+};
+
+/// A table as it is read: one cell a column, written out with its unit.
+struct Table {
+  std::vector<std::string> columns{};
+  std::vector<std::vector<std::string>> rows{};
+};
+
+/// What was measured, as opposed to checked: words, then a table, then plots, each optional.
+struct ReportSection {
+  std::string title{};
+  std::string text{};
+  Table table{};
+  std::vector<Plot> plots{};
+};
+
+/// A run. All forms of it are made from this.
+struct Report {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< target, profile, seed, versions
+  std::vector<ReportRow> rows;
+  std::vector<ReportSection> sections;
+  std::optional<std::chrono::sys_seconds> started;  ///< wall clock; none in virtual time
+
+  [[nodiscard]] std::array<std::size_t, kVerdictCount> counts() const noexcept;
+  [[nodiscard]] std::size_t count(Verdict verdict) const noexcept;
+};
+
+/// What a whole run came to. The values are the exit codes of every program (docs/cli.md).
+enum class Conclusion : std::uint8_t {
+  kPassed = 0,    ///< at least one row passed or deviated as known, and nothing was found
+  kFindings = 1,  ///< a row failed or is flaky
+  kRig = 3,       ///< the rig stood in the way, or everything was inconclusive
+  kNothing = 4,   ///< nothing ran
+};
+
+/// `passed`, `findings`, `rig` or `nothing`.
+[[nodiscard]] std::string_view to_string(Conclusion conclusion) noexcept;
+
+[[nodiscard]] Conclusion conclusion_of(const Report& report) noexcept;
+
+/// Whether text may have colours. Words say the same without them. It is for the program to know
+/// whether it writes to a terminal, and whether NO_COLOR is set.
+enum class Style : std::uint8_t { kPlain, kColour };
+
+/// `12 passed, 1 failed, 2 skipped`: only what there is, but always the first two.
+[[nodiscard]] std::string counts_line(const Report& report, Style style = Style::kPlain);
+
+/// For a terminal: a row is one line, and what it has to show below it unless it passed.
+[[nodiscard]] std::string to_text(const ReportRow& row, Style style = Style::kPlain);
+/// Words and table; a plot only by its title.
+[[nodiscard]] std::string to_text(const ReportSection& section, Style style = Style::kPlain);
+/// Title, facts, rows, sections and the line of counts.
+[[nodiscard]] std::string to_text(const Report& report, Style style = Style::kPlain);
+
+/// One JSON object of docs/schemas/report.schema.json, "armjig.report/1".
+[[nodiscard]] std::string to_json(const Report& report);
+
+/// JSON Lines as things happen, "armjig.report-row/1" (docs/schemas/report-row.schema.json): one
+/// start with title and facts, one line for each row, one end with the counts.
+[[nodiscard]] std::string to_jsonl_start(const Report& report);
+[[nodiscard]] std::string to_jsonl(const ReportRow& row);
+[[nodiscard]] std::string to_jsonl_end(const Report& report);
+
+/// JUnit XML for CI systems, valid against tests/data/junit.xsd: a suite for each topic. Rows that
+/// failed or were flaky are failures, trouble with the rig is an error, inconclusive is skipped.
+[[nodiscard]] std::string to_junit(const Report& report);
+
+/// SARIF 2.1.0 for code scanning: requirements are the rules, rows that failed, were flaky or
+/// deviated the results. Trouble with the rig is a notification of the tool.
+[[nodiscard]] std::string to_sarif(const Report& report);
+
+/// One page that needs no network, with search, filters and plots.
+[[nodiscard]] std::string to_html(const Report& report);
+
+/// Where a report is to be kept; an empty path: not in that form.
+struct ReportFiles {
+  std::string json{};
+  std::string html{};
+  std::string junit{};
+  std::string sarif{};
+};
+
+/// Writes each form that has a path. Stops at the first problem.
+[[nodiscard]] Outcome<void> write_files(const Report& report, const ReportFiles& files);
+
+/// Writes a file as a whole. Problems name the path.
+[[nodiscard]] Outcome<void> write_file(const std::string& path, std::string_view content);
+
+}  // namespace armjig

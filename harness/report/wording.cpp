@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/report/wording.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+
+namespace armjig::wording {
+namespace {
+
+/// The length of the well-formed UTF-8 character that `text` begins with, 0 if there is none
+/// (table 3-7 of the Unicode standard).
+std::size_t character_size(std::string_view text) noexcept {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const auto is_in = [&](std::size_t i, unsigned low, unsigned high) {
+    return i < text.size() && byte(i) >= low && byte(i) <= high;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first <= 0xDF) return is_in(1, 0x80, 0xBF) ? 2 : 0;
+  if (first >= 0xE0 && first <= 0xEF) {
+    const unsigned low = first == 0xE0 ? 0xA0 : 0x80;
+    const unsigned high = first == 0xED ? 0x9F : 0xBF;
+    return is_in(1, low, high) && is_in(2, 0x80, 0xBF) ? 3 : 0;
+  }
+  if (first >= 0xF0 && first <= 0xF4) {
+    const unsigned low = first == 0xF0 ? 0x90 : 0x80;
+    const unsigned high = first == 0xF4 ? 0x8F : 0xBF;
+    return is_in(1, low, high) && is_in(2, 0x80, 0xBF) && is_in(3, 0x80, 0xBF) ? 4 : 0;
+  }
+  return 0;
+}
+
+/// Controls, C1 too, which some terminals obey, and the two characters that XML forbids.
+bool is_forbidden(std::string_view character) noexcept {
+  const auto first = static_cast<unsigned char>(character.front());
+  const bool is_c1 = character >= "\xC2\x80" && character <= "\xC2\x9F";
+  return first < 0x20 || first == 0x7F || is_c1 || character == "\xEF\xBF\xBE" ||
+         character == "\xEF\xBF\xBF";
+}
+
+std::string escaped(std::string_view bytes) {
+  std::string out;
+  for (const char c : bytes) {
+    switch (c) {
+      case '\n':
+        out += "\\n";
+        break;
+      case '\r':
+        out += "\\r";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
+      default:
+        out += fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return out;
+}
+
+enum class Breaks : std::uint8_t { kShown, kKept };
+
+std::string printable(std::string_view text, Breaks breaks) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const auto size = character_size(text);
+    const auto character = text.substr(0, std::max<std::size_t>(size, 1));
+    const bool is_break = character == "\n" || character == "\t";
+    const bool is_kept = is_break ? breaks == Breaks::kKept : size > 0 && !is_forbidden(character);
+    out += is_kept ? std::string{character} : escaped(character);
+    text.remove_prefix(character.size());
+  }
+  return out;
+}
+
+std::string_view topic_of(std::string_view name) noexcept {
+  const auto first = name.find('.');
+  if (first == std::string_view::npos) return name;
+  const auto second = name.find('.', first + 1);
+  return name.substr(0, second == std::string_view::npos ? first : second);
+}
+
+}  // namespace
+
+std::string line(std::string_view text) { return printable(text, Breaks::kShown); }
+
+std::string lines(std::string_view text) { return printable(text, Breaks::kKept); }
+
+std::size_t width_of(std::string_view printable) noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      printable, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string xml(std::string_view text) {
+  std::string out;
+  for (const char c : lines(text)) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string counted(std::size_t count, Verdict verdict) {
+  constexpr std::array<std::string_view, kVerdictCount> kWords{
+      "passed", "deviated", "failed", "flaky", "skipped", "inconclusive", "error"};
+  const bool has_plural = verdict == Verdict::kError && count != 1;
+  return fmt::format("{} {}{}", count, kWords[static_cast<std::size_t>(verdict)],
+                     has_plural ? "s" : "");
+}
+
+bool is_finding(Verdict verdict) noexcept {
+  return verdict == Verdict::kFail || verdict == Verdict::kFlaky;
+}
+
+bool is_reason(Verdict verdict) noexcept {
+  return verdict == Verdict::kSkipped || verdict == Verdict::kInconclusive;
+}
+
+std::vector<Topic> topics_of(const Report& report) {
+  std::vector<Topic> topics;
+  for (const auto& row : report.rows) {
+    const auto name = topic_of(row.name);
+    auto topic = std::ranges::find(topics, name, &Topic::name);
+    if (topic == topics.end()) topic = topics.insert(topic, Topic{name, {}});
+    topic->rows.push_back(&row);
+  }
+  return topics;
+}
+
+std::vector<Detail> details_of(const ReportRow& row) {
+  std::vector<Detail> details;
+  const auto add = [&details](std::string_view label, std::string_view text) {
+    if (!text.empty()) details.push_back({label, line(text)});
+  };
+  if (!row.requirement.empty()) {
+    add("requirement",
+        fmt::format("{} ({}): {}", row.requirement, armjig::to_string(row.level), row.demand));
+  }
+  add("source", row.source);
+  add("expected", row.expected);
+  add(is_reason(row.verdict) ? "reason" : "got", row.actual);
+  return details;
+}
+
+std::string details_text(const ReportRow& row, std::string_view margin) {
+  std::string text;
+  const auto add = [&](std::string_view label, std::string_view content) {
+    text += fmt::format("{}{:<12} {}\n", margin, label, content);
+  };
+  for (const auto& [label, content] : details_of(row)) add(label, content);
+  if (!row.evidence.empty()) text += fmt::format("{}last exchange\n", margin);
+  const auto evidence = lines(row.evidence);
+  for (std::string_view rest = evidence; !rest.empty();) {
+    const auto end = std::min(rest.find('\n'), rest.size());
+    text += fmt::format("{}  {}\n", margin, rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  if (!row.repeat.empty()) add("again", line(row.repeat));
+  return text;
+}
+
+std::string expected_and_actual(const ReportRow& row) {
+  if (row.expected.empty()) return line(row.actual);
+  if (row.actual.empty()) return fmt::format("expected {}", line(row.expected));
+  return fmt::format("expected {}; got {}", line(row.expected), line(row.actual));
+}
+
+std::string iso_time(std::chrono::sys_seconds time) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(time.time_since_epoch().count()));
+}
+
+double seconds(Duration duration) noexcept {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace armjig::wording

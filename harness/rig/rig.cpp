@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/rig/rig.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/rig/wire_log.hpp"
+#include "harness/wire/dissector.hpp"
+
+namespace armjig {
+
+Outcome<Rig> Rig::open(std::string_view device, const RigOptions& options,
+                       OpenEmulated open_emulated) {
+  auto port = open_stream(options.target, open_emulated);
+  if (!port) return tl::unexpected{port.error()};
+  Rig rig;
+  rig.port_ = *std::move(port);
+  if (!options.target.is_emulated()) {
+    const auto judge = std::ranges::find(judges(), device, &JudgeEntry::device);
+    auto guarded = GuardedStream::guard(std::move(rig.port_), judge->make(), options.permissions);
+    if (!guarded) {
+      return problem(guarded.error().code, options.target.text,
+                     "the supervisor process cannot be started");
+    }
+    rig.guard_ = guarded->get();
+    rig.port_ = *std::move(guarded);
+  }
+  if (options.impairment) {
+    auto impaired = std::make_unique<ImpairedStream>(std::move(rig.port_), *options.impairment);
+    rig.impaired_ = impaired.get();
+    rig.port_ = std::move(impaired);
+  }
+  if (!options.wire_log.empty()) {
+    const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
+    auto logged = LoggedStream::log(std::move(rig.port_), options.wire_log, *entry);
+    if (!logged) return tl::unexpected{logged.error()};
+    rig.port_ = *std::move(logged);
+  }
+  return rig;
+}
+
+std::optional<Refusal> Rig::last_refusal() const {
+  return guard_ == nullptr ? std::nullopt : guard_->last_refusal();
+}
+
+std::optional<ImpairmentStatistics> Rig::impairments() const {
+  if (impaired_ == nullptr) return std::nullopt;
+  return impaired_->statistics();
+}
+
+}  // namespace armjig

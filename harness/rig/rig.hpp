@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "harness/core/error.hpp"
+#include "harness/link/impaired_stream.hpp"
+#include "harness/link/impairment.hpp"
+#include "harness/link/stream_port.hpp"
+#include "harness/rig/guard.hpp"
+#include "harness/rig/target.hpp"
+
+namespace armjig {
+
+/// How a target is opened.
+struct RigOptions {
+  Target target;
+  Permissions permissions;               ///< what may be written to it, if it is not emulated
+  std::optional<Impairment> impairment;  ///< a bad link on purpose
+  std::string wire_log;                  ///< a file for every byte that passes; empty: none
+};
+
+/// A device on the jig. From the device outwards: its port, the guard unless it is emulated, the
+/// impairments, the wire log. This is the one way by which programs get at a target.
+class Rig {
+ public:
+  /// `device` must be one that this room knows. With permission to move, call it while the program
+  /// has one thread (see `GuardedStream::guard`).
+  [[nodiscard]] static Outcome<Rig> open(std::string_view device, const RigOptions& options,
+                                         OpenEmulated open_emulated);
+
+  [[nodiscard]] StreamPort& port() noexcept { return *port_; }
+
+  /// Why the guard refused the last write, if it did, or stopped the arm.
+  [[nodiscard]] std::optional<Refusal> last_refusal() const;
+
+  /// What the impairments did; none if there are none.
+  [[nodiscard]] std::optional<ImpairmentStatistics> impairments() const;
+
+ private:
+  std::unique_ptr<StreamPort> port_;
+  const GuardedStream* guard_ = nullptr;      ///< inside `port_`
+  const ImpairedStream* impaired_ = nullptr;  ///< inside `port_`
+};
+
+}  // namespace armjig

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "harness/core/error.hpp"
+#include "harness/link/stream_port.hpp"
+
+namespace armjig {
+
+/// Where a device is, as users write it everywhere: `SCHEME:ADDRESS?OPTION=VALUE&...`, for example
+/// `pty:/dev/pts/5`, `tcp:127.0.0.1:4000`, `emulated:?fault=zero:echo`.
+struct Target {
+  std::string text;  ///< as written
+  std::string scheme;
+  std::string address;
+  std::map<std::string, std::string, std::less<>> options;
+
+  [[nodiscard]] bool is_emulated() const noexcept { return scheme == "emulated"; }
+};
+
+/// Problems: `kBadTarget`.
+[[nodiscard]] Outcome<Target> parse_target(std::string_view text);
+
+/// Makes the port of an emulated device from the target's options. Registered by whoever knows
+/// emulators, which this room does not.
+using OpenEmulated = Outcome<std::unique_ptr<StreamPort>> (*)(const Target& target);
+
+/// Opens a byte stream to the target. Problems name the target and say what to do.
+[[nodiscard]] Outcome<std::unique_ptr<StreamPort>> open_stream(const Target& target,
+                                                               OpenEmulated open_emulated);
+
+}  // namespace armjig

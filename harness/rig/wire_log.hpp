@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "harness/core/error.hpp"
+#include "harness/link/stream_port.hpp"
+#include "harness/wire/dissector.hpp"
+
+namespace armjig {
+
+/// Writes down every byte that passes, with its time and what it means, as a `golden-trace/1` file:
+/// a line for each piece as it was written or read, with a key `messages` for those that ended in
+/// it. `armjig decode` reads it back. Lines are flushed as they are made, so that nothing is
+/// missing after a crash.
+class LoggedStream final : public StreamPort {
+ public:
+  /// Problems: the file cannot be written.
+  [[nodiscard]] static Outcome<std::unique_ptr<StreamPort>> log(std::unique_ptr<StreamPort> port,
+                                                                const std::string& path,
+                                                                const DissectorEntry& device);
+
+  Result<void> write(Bytes bytes) override;
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override;
+  [[nodiscard]] Instant now() const override { return port_->now(); }
+  [[nodiscard]] std::optional<int> descriptor() const override { return port_->descriptor(); }
+
+ private:
+  LoggedStream(std::unique_ptr<StreamPort> port, std::ofstream file,
+               std::unique_ptr<Dissector> dissector);
+  void write_line(Direction direction, Bytes bytes);
+
+  std::unique_ptr<StreamPort> port_;
+  std::ofstream file_;
+  std::unique_ptr<Dissector> dissector_;
+};
+
+}  // namespace armjig

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/wire/field.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace armjig {
+namespace {
+
+std::string bits_text(const Field& field, std::int64_t value) {
+  std::string text;
+  for (std::size_t i = 0; i < field.bits.size(); ++i) {
+    const bool is_set = (value >> (7 - i) & 1) != 0;
+    if (is_set && !field.bits[i].empty()) text += fmt::format("{} ", field.bits[i]);
+  }
+  return text + fmt::format("(0x{:02X})", value);
+}
+
+std::string code_text(const Field& field, std::int64_t value) {
+  const auto named = std::ranges::find(field.values, value, &NamedValue::value);
+  return named == field.values.end() ? fmt::format("{}", value)
+                                     : fmt::format("{} ({})", value, named->name);
+}
+
+}  // namespace
+
+std::int64_t field_value(const Field& field, Bytes message) noexcept {
+  std::uint64_t raw = 0;
+  for (const auto byte : message.subspan(field.offset, field.width)) {
+    raw = raw << 8 | std::to_integer<std::uint64_t>(byte);
+  }
+  if (field.encoding != Encoding::kSigned) return static_cast<std::int64_t>(raw);
+  const int unused_bits = 64 - 8 * field.width;
+  return static_cast<std::int64_t>(raw << unused_bits) >> unused_bits;
+}
+
+void set_field_value(const Field& field, std::span<std::byte> message,
+                     std::int64_t value) noexcept {
+  auto rest = static_cast<std::uint64_t>(value);
+  for (std::size_t i = field.width; i-- > 0; rest >>= 8) {
+    message[field.offset + i] = static_cast<std::byte>(rest);
+  }
+}
+
+std::string field_text(const Field& field, std::int64_t value) {
+  switch (field.encoding) {
+    case Encoding::kBits:
+      return bits_text(field, value);
+    case Encoding::kCode:
+      return code_text(field, value);
+    case Encoding::kLiteral:
+      return fmt::format("0x{:0{}X}", value, 2 * field.width);
+    case Encoding::kUnsigned:
+    case Encoding::kSigned:
+      break;
+  }
+  return field.unit.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, field.unit);
+}
+
+const Field* find_field(std::span<const Field> fields, std::string_view name) noexcept {
+  const auto found = std::ranges::find(fields, name, &Field::name);
+  return found == fields.end() ? nullptr : &*found;
+}
+
+}  // namespace armjig

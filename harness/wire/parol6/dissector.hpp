@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "harness/wire/dissector.hpp"
+
+namespace armjig::parol6 {
+
+/// Finds frames as the strict receiver does, commands one way and telemetry the other. What lies
+/// between them is reported as `noise` with the reason why it is no frame.
+[[nodiscard]] std::unique_ptr<Dissector> make_dissector();
+
+}  // namespace armjig::parol6

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inputs that the fuzzers begin with and have found, as ordinary tests with any compiler. A
+// broken promise aborts; the last file named on standard output is to blame.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+// Each target under a name of its own.
+// NOLINTBEGIN(bugprone-suspicious-include)
+#define LLVMFuzzerTestOneInput fuzz_parol6_board
+#include "fuzz/parol6_board.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_parol6_splitter
+#include "fuzz/parol6_splitter.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_trace_reader
+#include "fuzz/trace_reader.cpp"
+#undef LLVMFuzzerTestOneInput
+// NOLINTEND(bugprone-suspicious-include)
+
+namespace armjig {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Target = int (*)(const std::uint8_t*, std::size_t);
+
+void run_corpus(Target target, const char* name) {
+  std::vector<fs::path> files;
+  for (const auto& entry :
+       fs::directory_iterator{fs::path{ARMJIG_SOURCE_DIR} / "fuzz/corpus" / name}) {
+    files.push_back(entry.path());
+  }
+  ASSERT_FALSE(files.empty());
+  std::ranges::sort(files);
+  for (const auto& file : files) {
+    std::cout << file.string() << std::endl;  // NOLINT(performance-avoid-endl): before an abort
+    std::ifstream in{file, std::ios::binary};
+    const std::string input{std::istreambuf_iterator<char>{in}, {}};
+    target(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
+  }
+}
+
+TEST(FuzzCorpus, CuttingTheStreamDifferentlyChangesNothing) {
+  run_corpus(fuzz_parol6_splitter, "parol6_splitter");
+}
+
+TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {
+  run_corpus(fuzz_parol6_board, "parol6_board");
+}
+
+TEST(FuzzCorpus, AnyTextIsATraceOrRefused) { run_corpus(fuzz_trace_reader, "trace_reader"); }
+
+}  // namespace
+}  // namespace armjig

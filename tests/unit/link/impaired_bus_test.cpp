@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/link/impaired_bus.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "emulators/demo/demo.hpp"
+#include "harness/link/memory_bus.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using Access = BusPort::Access;
+
+constexpr BusAddress kDemo{demo::BusDevice::kAddress};
+
+/// A device that notes what is written and reads as 1, 2, 3, ...
+struct Recorder {
+  std::vector<int> written;
+  int reads = 0;
+
+  [[nodiscard]] bool acknowledges(std::uint8_t address) const {
+    return address == demo::BusDevice::kAddress;
+  }
+  [[nodiscard]] bool write(Instant /*time*/, std::byte byte) {
+    written.push_back(std::to_integer<int>(byte));
+    return true;
+  }
+  [[nodiscard]] std::byte read(Instant /*time*/) { return static_cast<std::byte>(++reads); }
+};
+
+struct Bus {
+  explicit Bus(std::string_view text) {
+    const auto impairment = parse_impairment(text);
+    auto inner = std::make_unique<MemoryBus<Recorder>>(Recorder{});
+    device = &inner->device();
+    auto made = ImpairedBus::make(std::move(inner), impairment.value());
+    if (!made) ADD_FAILURE() << describe(made.error());
+    port = std::move(made.value());
+  }
+  Recorder* device{};
+  std::unique_ptr<ImpairedBus> port;
+};
+
+TEST(ImpairedBus, WithoutDefectsIsThePortItself) {
+  const Bus bus{"seed=1"};
+  EXPECT_EQ(bus.port->start(kDemo, Access::kWrite), Ack::kAck);
+  EXPECT_EQ(bus.port->write(std::byte{5}), Ack::kAck);
+  EXPECT_EQ(bus.port->start(kDemo, Access::kRead), Ack::kAck);
+  EXPECT_EQ(bus.port->read(Ack::kNack), std::byte{1});
+  EXPECT_TRUE(bus.port->stop());
+  EXPECT_THAT(bus.device->written, ElementsAre(5));
+  EXPECT_EQ(bus.port->now(), at(390us));  // two starts, four bytes of nine clocks, a stop
+}
+
+TEST(ImpairedBus, MissesEverythingAfterAMissedAddress) {
+  const Bus bus{"out.loss=100%"};
+  EXPECT_EQ(bus.port->start(kDemo, Access::kWrite), Ack::kNack);
+  EXPECT_EQ(bus.port->write(std::byte{5}), Ack::kNack);
+  EXPECT_EQ(bus.port->read(Ack::kNack), std::byte{0xFF});
+  EXPECT_TRUE(bus.port->stop());
+  EXPECT_THAT(bus.device->written, IsEmpty());
+  EXPECT_EQ(bus.device->reads, 0);
+  EXPECT_EQ(bus.port->now(), at(270us));  // three bytes that nobody saw
+  EXPECT_EQ(bus.port->statistics().out.chunks_lost, 1U);
+}
+
+TEST(ImpairedBus, RefusesEachByteThatTheDeviceMisses) {
+  const Bus bus{"out.loss=30%,seed=3"};
+  std::vector<int> acknowledged;
+  int refused = 0;
+  for (int i = 0; i < 200; ++i) {
+    if (bus.port->start(kDemo, Access::kWrite) != Ack::kAck) {
+      ++refused;
+      continue;
+    }
+    const bool is_taken = bus.port->write(static_cast<std::byte>(i)) == Ack::kAck;
+    if (is_taken) acknowledged.push_back(i);
+    refused += is_taken ? 0 : 1;
+  }
+  EXPECT_EQ(bus.device->written, acknowledged);
+  EXPECT_EQ(bus.port->statistics().out.chunks_lost, static_cast<unsigned>(refused));
+  EXPECT_GT(refused, 50);
+}
+
+TEST(ImpairedBus, ReadsALostByteAsAnIdleLine) {
+  const Bus bus{"in.loss=100%"};
+  EXPECT_EQ(bus.port->start(kDemo, Access::kRead), Ack::kAck);
+  EXPECT_EQ(bus.port->read(Ack::kAck), std::byte{0xFF});
+  EXPECT_EQ(bus.device->reads, 1) << "the device did send it";
+}
+
+TEST(ImpairedBus, FlipsBitsOfDataBothWays) {
+  const Bus bus{"in.bit-errors=100%"};
+  EXPECT_EQ(bus.port->start(kDemo, Access::kRead), Ack::kAck);
+  EXPECT_EQ(bus.port->read(Ack::kAck), std::byte{0xFE});
+  EXPECT_EQ(bus.port->statistics().in.bits_flipped, 8U);
+}
+
+TEST(ImpairedBus, NeverMeansAnotherDevice) {
+  const Bus bus{"out.bit-errors=100%"};
+  // 0x55 with all bits flipped is 0x2A, the demo device.
+  EXPECT_EQ(bus.port->start(BusAddress{0x55}, Access::kWrite), Ack::kNack);
+  EXPECT_EQ(bus.port->start(kDemo, Access::kWrite), Ack::kNack);
+}
+
+TEST(ImpairedBus, StretchesTheClockToDelay) {
+  const Bus bus{"out.delay=1ms,in.delay=2ms"};
+  std::ignore = bus.port->start(kDemo, Access::kRead);
+  std::ignore = bus.port->read(Ack::kNack);
+  EXPECT_EQ(bus.port->now(), at(3190us));  // 1 ms, start and address, the byte, 2 ms
+}
+
+TEST(ImpairedBus, FindsNobodyAfterADisconnect) {
+  const Bus bus{"in.disconnect-after=1"};
+  EXPECT_EQ(bus.port->start(kDemo, Access::kRead), Ack::kAck);
+  EXPECT_EQ(bus.port->read(Ack::kAck), std::byte{1});
+  EXPECT_EQ(bus.port->read(Ack::kAck), std::byte{0xFF});
+  EXPECT_TRUE(bus.port->stop());
+  EXPECT_EQ(bus.port->start(kDemo, Access::kWrite), Ack::kNack);
+  EXPECT_EQ(bus.device->reads, 1);
+}
+
+TEST(ImpairedBus, RefusesWhatABusCannotHave) {
+  const auto impairment = parse_impairment("loss=1%,out.split=random,double=2%,seed=9");
+  ASSERT_TRUE(impairment);
+  const auto made =
+      ImpairedBus::make(std::make_unique<MemoryBus<Recorder>>(Recorder{}), *impairment);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(describe(made.error()),
+            "impairment 'double=2%,out.split=random': not supported here; an I2C bus can have "
+            "bit-errors, loss, delay, bandwidth, stall, disconnect and disconnect-after");
+}
+
+}  // namespace
+}  // namespace armjig

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "harness/timing/latency_histogram.hpp"
+#include "harness/timing/schedule.hpp"
+#include "tests/unit/support/bytes.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(PeriodicSchedule, ALateCycleDoesNotMoveTheNextDeadline) {
+  PeriodicSchedule schedule{at(0ms), 10ms};
+  const auto cycle = schedule.begin(at(3ms));
+  EXPECT_EQ(cycle.lateness, 3ms);
+  EXPECT_EQ(cycle.skipped, 0U);
+  EXPECT_EQ(schedule.next(), at(10ms));
+}
+
+TEST(PeriodicSchedule, CountsDeadlinesThatPassedByAndDoesNotMakeUpForThem) {
+  PeriodicSchedule schedule{at(0ms), 10ms};
+  const auto cycle = schedule.begin(at(34ms));
+  EXPECT_EQ(cycle.deadline, at(30ms));
+  EXPECT_EQ(cycle.lateness, 4ms);
+  EXPECT_EQ(cycle.skipped, 3U);
+  EXPECT_EQ(schedule.next(), at(40ms));
+}
+
+TEST(LatencyHistogram, IsEmptyAtFirst) {
+  const LatencyHistogram histogram;
+  EXPECT_EQ(histogram.count(), 0U);
+  EXPECT_EQ(histogram.min(), 0ns);
+  EXPECT_EQ(histogram.max(), 0ns);
+  EXPECT_EQ(histogram.percentile(50), 0ns);
+}
+
+TEST(LatencyHistogram, PercentilesAreWithinOnePointSixPercentOfTheSortedValues) {
+  test::Dice dice{1};
+  LatencyHistogram histogram;
+  std::vector<std::int64_t> values;
+  for (int i = 0; i < 10'000; ++i) {
+    values.push_back(dice.between(0, std::int64_t{1} << dice.between(1, 35)));
+    histogram.record(Duration{values.back()});
+  }
+  std::ranges::sort(values);
+  EXPECT_EQ(histogram.min().count(), values.front());
+  EXPECT_EQ(histogram.max().count(), values.back());
+  for (const double percent : {0.01, 1.0, 25.0, 50.0, 90.0, 99.0, 99.9, 100.0}) {
+    const auto rank = std::max<std::size_t>(
+        1,
+        static_cast<std::size_t>(std::ceil(percent / 100.0 * static_cast<double>(values.size()))));
+    const auto exact = static_cast<double>(values[rank - 1]);
+    const auto shown = static_cast<double>(histogram.percentile(percent).count());
+    EXPECT_GE(shown, exact) << percent;
+    EXPECT_LE(shown, exact * 1.016 + 1) << percent;
+  }
+}
+
+TEST(LatencyHistogram, TakesWhatIsOutOfRangeWithoutHarm) {
+  LatencyHistogram histogram;
+  histogram.record(-5ms);
+  histogram.record(Duration::max());
+  EXPECT_EQ(histogram.count(), 2U);
+  EXPECT_EQ(histogram.min(), 0ns);
+  EXPECT_EQ(histogram.max(), Duration::max());
+  EXPECT_EQ(histogram.percentile(100), Duration::max());
+}
+
+}  // namespace
+}  // namespace armjig
