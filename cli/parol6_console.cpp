@@ -78,23 +78,23 @@ std::span<const Parol6Console::Row> Parol6Console::rows() noexcept {
   constexpr auto kAlone = When::kAlone;
   static constexpr std::string_view kJointWords = "j1 j2 j3 j4 j5 j6";
   static constexpr std::array kRows{
-      Row{"help", "[COMMAND]", "what there is, or more of one command", kAlways, &Self::help, ""},
+      Row{"help", "[COMMAND]", "what there is", kAlways, &Self::help, ""},
       Row{"status", "", "everything that telemetry says", kAlways, &Self::status, ""},
-      Row{"enable", "", "let the board move; also ends the latch of the emergency stop", kAlone,
+      Row{"enable", "", "let the board move; ends the latch of an emergency stop", kAlone,
           &Self::enable, ""},
       Row{"disable", "", "let the board ignore all motion", kAlways, &Self::disable, ""},
       Row{"clear", "", "clear error: ends a homing, enables nothing", kAlone, &Self::clear, ""},
       Row{"home", "", "find the zero of every joint; takes half a minute", kAlone, &Self::home, ""},
       Row{"jog", "jN SPEED [SECONDS]",
-          "run a joint, for a time or until 'stop'; SPEED in steps/s, or 10deg for deg/s", kAlone,
-          &Self::jog, kJointWords},
+          "run a joint until 'stop'; SPEED in steps/s, or 10deg for deg/s", kAlone, &Self::jog,
+          kJointWords},
       Row{"stop", "", "make the arm stand, whatever it does", kAlways, &Self::stop_arm, ""},
-      Row{"goto", "jN=PLACE ...", "move joints together to places in steps, or j1=90deg", kAlone,
+      Row{"goto", "jN=PLACE ...", "move joints together; PLACE in steps, or 90deg", kAlone,
           &Self::go_to, "j1= j2= j3= j4= j5= j6="},
       Row{"out", "1|2 on|off", "switch an output", kAlone, &Self::out, "1 2|on off"},
       Row{"gripper", "move POSITION SPEED CURRENT | calibrate | clear",
-          "POSITION 0 (open) to 255, SPEED 0 to 255, CURRENT 100 to 1000 mA", kAlone,
-          &Self::gripper, "move calibrate clear"},
+          "POSITION 0 is open, 255 closed; CURRENT 100 to 1000 mA", kAlone, &Self::gripper,
+          "move calibrate clear"},
       Row{"estop", "", "state of the emergency stop", kAlways, &Self::estop, ""},
       Row{"stats", "", "what the link did so far", kAlways, &Self::stats, ""},
       Row{"wait", "SECONDS", "do nothing for a time", kAlone, &Self::wait, ""},
@@ -146,9 +146,8 @@ void Parol6Console::begin(std::string_view line) {
   }
   const auto read = (this->*row->run)(Words{words}.subspan(1));
   if (read) return;
-  const auto usage = read.error().empty() ? "" : read.error() + "; ";
-  say_(Tone::kUnreadable, fmt::format("{}: {}write {} {}", row->name, usage, row->name,
-                                      row->arguments.empty() ? "alone" : row->arguments));
+  const auto reason = read.error().empty() ? "" : read.error() + "; ";
+  say_(Tone::kUnreadable, fmt::format("{}usage: {}", reason, call_of(*row)));
 }
 
 void Parol6Console::stop() {
@@ -252,13 +251,21 @@ bool Parol6Console::may_go_to(const JointSteps& goal) {
 
 // The commands.
 
+std::string Parol6Console::call_of(const Row& row) {
+  return row.arguments.empty() ? std::string{row.name}
+                               : fmt::format("{} {}", row.name, row.arguments);
+}
+
 Parol6Console::Read Parol6Console::help(Words words) {
+  constexpr std::size_t kColumn = 26;
   if (words.size() > 1) return wrong("");
   std::string text;
   for (const auto& row : rows()) {
     if (!words.empty() && row.name != words.front()) continue;
-    const auto call = fmt::format("{} {}", row.name, row.arguments);
-    text += fmt::format("{}{:<27} {}", text.empty() ? "" : "\n", call, row.help);
+    const auto call = call_of(row);
+    const auto* const gap = call.size() < kColumn ? "" : "\n";
+    text += fmt::format("{}{}{}{:>{}}{}", text.empty() ? "" : "\n", call, gap, "",
+                        kColumn - (call.size() < kColumn ? call.size() : 0), row.help);
   }
   const bool asks_for_cartesian = !words.empty() && words.front() == "cartesian";
   if (asks_for_cartesian) text = "Cartesian jog comes with motion planning; for now, jog joints";

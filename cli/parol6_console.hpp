@@ -82,6 +82,7 @@ class Parol6Console {
   };
   [[nodiscard]] static std::span<const Row> rows() noexcept;
   [[nodiscard]] static const Row* find_row(std::string_view name) noexcept;
+  [[nodiscard]] static std::string call_of(const Row& row);
 
   Read help(Words words);
   Read status(Words words);

@@ -80,9 +80,7 @@ class Homing {
   void wrist_pass(std::array<Joint, kJointCount>& joints, Micros now) noexcept;
   void single_pass(Joint& joint, std::size_t j, Micros now) noexcept;
   void seek(Joint& joint, bool& seen, Micros now) noexcept;
-  void mark_homed(std::size_t j) noexcept {
-    homed_ = static_cast<std::uint8_t>(homed_ | flag(j));
-  }
+  void mark_homed(std::size_t j) noexcept { homed_ = static_cast<std::uint8_t>(homed_ | flag(j)); }
   void finish(std::array<Joint, kJointCount>& joints) noexcept;
 
   Stages stages_{};

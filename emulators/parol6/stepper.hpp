@@ -48,9 +48,7 @@ class Stepper {
   [[nodiscard]] std::int32_t direction() const noexcept { return direction_; }
   [[nodiscard]] std::uint32_t interval_us() const noexcept { return interval_; }
   [[nodiscard]] std::int32_t ramp_index() const noexcept { return ramp_index_; }
-  [[nodiscard]] bool is_running() const noexcept {
-    return speed_ != 0.0F || target_ != position_;
-  }
+  [[nodiscard]] bool is_running() const noexcept { return speed_ != 0.0F || target_ != position_; }
 
   void set_max_speed(float steps_per_second) noexcept;
   void set_acceleration(StepsPerSecond2 acceleration) noexcept;

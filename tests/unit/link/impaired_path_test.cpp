@@ -9,7 +9,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/link/any_impairment.hpp"
@@ -167,6 +170,14 @@ TEST(ImpairedPath, JoinsNoLongerThanTheWait) {
               ElementsAre(is(3ms, "01 02"), is(6ms, "03"), is(23ms, "04")));
 }
 
+TEST(ImpairedPath, StopsJoiningAtTheEndOfTheWaitThoughNobodyLooks) {
+  auto path = path_of("merge=100:3ms");
+  path.push(at(0ms), hex("01"));
+  path.push(at(3ms), hex("02"));
+  EXPECT_THAT(path.pop(at(1h)), ::testing::Optional(is(3ms, "01")));
+  EXPECT_THAT(path.pop(at(1h)), ::testing::Optional(is(6ms, "02")));
+}
+
 TEST(ImpairedPath, JoinsAtRandom) {
   auto path = path_of("merge=random");
   const auto chunks = numbered(1000, 2, 1ms);
@@ -221,6 +232,24 @@ TEST(ImpairedPath, KeepsTheOrderOfChunksThatAreAllHeld) {
   auto path = path_of("reorder=100%:7ms");
   EXPECT_THAT(carried(path, {{at(1ms), hex("01")}, {at(2ms), hex("02")}}),
               ElementsAre(is(8ms, "01"), is(9ms, "02")));
+}
+
+TEST(ImpairedPath, KeepsTheOrderOfChunksThatAreAllHeldAndDelayed) {
+  auto path = path_of("reorder=100%,delay=uniform(0ms,50ms)");
+  const auto chunks = numbered(1000, 2, 1ms);
+  const auto deliveries = carried(path, chunks);
+  EXPECT_EQ(bytes_of(deliveries), bytes_of(chunks));
+  EXPECT_TRUE(std::ranges::is_sorted(deliveries, {}, &Delivery::due));
+}
+
+TEST(ImpairedPath, CountsAReorderedChunkOnceHoweverItIsSplit) {
+  auto whole = path_of("reorder=20%,seed=3");
+  auto split = path_of("reorder=20%,split=3,seed=3");
+  const auto chunks = numbered(100, 9, 1ms);
+  std::ignore = carried(whole, chunks);
+  std::ignore = carried(split, chunks);
+  EXPECT_GT(whole.statistics().chunks_reordered, 5U);
+  EXPECT_EQ(split.statistics().chunks_reordered, whole.statistics().chunks_reordered);
 }
 
 TEST(ImpairedPath, KeepsTheOrderOfDelays) {
