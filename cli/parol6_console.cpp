@@ -119,6 +119,7 @@ Outcome<void> Parol6Console::cycle() {
   if (cycled) {
     accepted_ = wanted_;
     refusals_ = 0;
+    ++frames_;
   } else if (cycled.error().code != ErrorCode::kForbidden) {
     return problem(cycled.error().code, target_, "is it still there and switched on?");
   } else if (++refusals_ == kMostRefusals) {
@@ -187,6 +188,8 @@ void Parol6Console::go_on(std::string_view name, std::unique_ptr<Activity> activ
   activity_ = std::move(activity);
   name_ = name;
   began_ = now();
+  refusals_ = 0;
+  frames_ = 0;
 }
 
 void Parol6Console::go_on_if(std::string_view name, Result<std::unique_ptr<Activity>> begun) {
@@ -230,7 +233,11 @@ void Parol6Console::take_refusal() {
   is_jogging_ = false;
   activity_.reset();
   const auto refusal = rig_.last_refusal();
-  say_(Tone::kFailed, "refused: " + (refusal ? refusal->reason : std::string{"by the guard"}));
+  const auto reason = refusal ? refusal->reason : std::string{"the guard does not want it"};
+  say_(Tone::kFailed,
+       frames_ == 0
+           ? "refused: " + reason
+           : fmt::format("stopped by the guard: {}; if nothing moves now, 'enable'", reason));
 }
 
 /// As the guard of a real arm would have it, but at once and not on the way.

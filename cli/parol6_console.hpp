@@ -121,7 +121,8 @@ class Parol6Console {
   Instant began_{};
   bool is_jogging_ = false;  ///< and nothing will end it but another command
   bool wants_to_quit_ = false;
-  int refusals_ = 0;  ///< in a row
+  int refusals_ = 0;          ///< in a row, since the last command
+  std::uint64_t frames_ = 0;  ///< that left since then
 
   /// What goes along with every frame. A frame that is refused takes back what it would change.
   struct Extras {

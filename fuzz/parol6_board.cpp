@@ -106,7 +106,7 @@ std::vector<Beginning> make_prepared() {
   constexpr std::array kDemoTimes{1s, 19s, 20s, 22s, 26s, 40s};
   constexpr std::uint32_t kPeriod = 20;
   std::vector<Beginning> boards;
-  Board homing{parol6::standard_plant(), {.pass_period_us = kPeriod}};
+  Board homing{parol6::standard_plant(), {.pass_period = std::chrono::microseconds{kPeriod}}};
   homing.receive(at(0s), command(Command::kHome));
   homing.receive(at(10ms), command(Command::kIdle));
   for (const auto time : kHomingTimes) {
@@ -114,7 +114,7 @@ std::vector<Beginning> make_prepared() {
     homing.clear_sent();
     boards.push_back({homing, at(time), kPeriod});
   }
-  Board demo{parol6::standard_plant(), {.pass_period_us = kPeriod}};
+  Board demo{parol6::standard_plant(), {.pass_period = std::chrono::microseconds{kPeriod}}};
   demo.receive(at(0s), command(Command::kDemo));
   for (const auto time : kDemoTimes) {
     demo.advance_to(at(time));
@@ -128,17 +128,17 @@ Beginning fresh_board(Input& input) {
   constexpr std::array<std::uint32_t, 8> kPeriods{20, 10, 1, 7, 37, 50, 100, 1000};
   parol6::BoardTiming timing;
   const auto clocks = input.u8();
-  timing.pass_period_us = kPeriods[clocks & 7];
+  timing.pass_period = std::chrono::microseconds{kPeriods[clocks & 7]};
   if ((clocks & 0x08) != 0) timing.micros_at_start = UINT32_MAX - 20'000;  // wraps soon
   if ((clocks & 0x10) != 0) timing.timer_bits = 32;
-  if ((clocks & 0x20) != 0) timing.timer_at_start = 65'000;
+  if ((clocks & 0x20) != 0) timing.timer_at_start = Ticks{65'000};
   auto plant = parol6::standard_plant();
   for (auto& axis : plant.axes) {
     axis.position = Steps{0};
     axis.limit.threshold = Steps{static_cast<std::int8_t>(input.u8())};
     if ((clocks & 0x40) != 0) axis.limit.side = parol6::LimitSwitch::Side::kAtOrAbove;
   }
-  return {Board{plant, timing}, at(0s), timing.pass_period_us};
+  return {Board{plant, timing}, at(0s), static_cast<std::uint32_t>(timing.pass_period.count())};
 }
 
 /// Otherwise a fresh one with a plant and clocks of the input's choice.

@@ -83,7 +83,7 @@ Outcome<Faulty<Arm>> make_arm(const DeviceOptions& options, const std::string& w
     if (name == "pass-us") {
       const auto period = parse_pass_period(where, value);
       if (!period) return tl::unexpected{period.error()};
-      arm.timing.pass_period_us = *period;
+      arm.timing.pass_period = std::chrono::microseconds{*period};
     } else if (name == "fault") {
       auto parsed = parse_faults(where, value);
       if (!parsed) return tl::unexpected{parsed.error()};

@@ -6,14 +6,14 @@
 namespace armjig::parol6 {
 namespace {
 
-constexpr float kMaxSpeed = 50'000.0F;  // parol6.jog.clamp
+constexpr StepRate kMaxSpeed{50'000};  // parol6.jog.clamp
 constexpr std::array<StepsPerSecond2, kJointCount> kPowerUpAcceleration{
     StepsPerSecond2{1000}, StepsPerSecond2{1000}, StepsPerSecond2{500},
     StepsPerSecond2{500},  StepsPerSecond2{500},  StepsPerSecond2{100}};
 
 /// The built-in two-leg demonstration.
 struct DemoParameters {
-  float max_speed_and_acceleration{};
+  float max_speed_and_acceleration{};  ///< steps/s and steps/s^2
   Steps out{};
   Steps back{};
 };
@@ -43,7 +43,7 @@ std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant) noexcept {
     joints[j].pressed_level = kHomingTable[j].pressed_level;
     joints[j].stepper.set_max_speed(kMaxSpeed);
     joints[j].stepper.set_acceleration(kPowerUpAcceleration[j]);
-    joints[j].stepper.set_speed(0.0F);
+    joints[j].stepper.set_speed(StepRate{});
   }
   return joints;
 }
@@ -111,7 +111,7 @@ std::uint32_t Board::timer(std::int64_t pass) const noexcept {
   // 703,125 Hz is 45 ticks in 64 us.
   const auto ticks = static_cast<std::uint64_t>(pass - start_) * 45 / 64;
   const auto mask = (std::uint64_t{1} << timing_.timer_bits) - 1;
-  return static_cast<std::uint32_t>((timing_.timer_at_start + ticks) & mask);
+  return static_cast<std::uint32_t>((timing_.timer_at_start.value + ticks) & mask);
 }
 
 Micros Board::clock(std::int64_t pass) const noexcept {
@@ -130,7 +130,7 @@ void Board::run_passes(std::int64_t last) {
       }
     }
     if (must_communicate) communicate(pass);
-    next_pass_ = pass + timing_.pass_period_us;
+    next_pass_ = pass + timing_.pass_period.count();
   }
 }
 
@@ -138,10 +138,10 @@ void Board::run_passes(std::int64_t last) {
 /// last of them, `kNoPass` if there was none.
 std::int64_t Board::coast(std::int64_t last) {
   if (outlook_ == Outlook::kOpen) return kNoPass;
-  const auto period = std::int64_t{timing_.pass_period_us};
+  const auto period = std::int64_t{timing_.pass_period.count()};
   PassSpan span{.first = next_pass_,
                 .last = next_pass_ + (last - next_pass_) / period * period,
-                .period = timing_.pass_period_us,
+                .period = static_cast<std::uint32_t>(period),
                 .clock_offset = clock(0).value};
   if (outlook_ == Outlook::kStill) return span.last;
   if (outlook_ == Outlook::kSteady) {
@@ -228,7 +228,7 @@ Board::Next Board::act(Micros now) {
       if (!is_enabled_) break;
       stop_homing();
       for (std::size_t j = 0; j < kJointCount; ++j) {
-        joints_[j].stepper.set_speed(static_cast<float>(latched_.speed[j].value));
+        joints_[j].stepper.set_speed(to_rate(latched_.speed[j]));
         joints_[j].run_speed(now);
       }
       break;
@@ -253,7 +253,7 @@ void Board::idle() noexcept {
     return;
   }
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    joints_[j].stepper.set_speed(static_cast<float>(latched_.speed[j].value));
+    joints_[j].stepper.set_speed(to_rate(latched_.speed[j]));
   }
 }
 
@@ -277,7 +277,7 @@ Board::Next Board::demo(Micros now) noexcept {
   if (demo_leg_ == DemoLeg::kWaiting) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       auto& stepper = joints_[j].stepper;
-      stepper.set_max_speed(kDemoTable[j].max_speed_and_acceleration);
+      stepper.set_max_speed(StepRate{kDemoTable[j].max_speed_and_acceleration});
       stepper.set_acceleration(StepsPerSecond2{kDemoTable[j].max_speed_and_acceleration});
       stepper.move_to(kDemoTable[j].out);
     }
@@ -378,7 +378,7 @@ void Board::send_telemetry(std::int64_t pass, std::uint16_t interval) {
   TelemetryFrame frame;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     frame.position[j] = joints_[j].position();
-    frame.speed[j] = StepsPerSecond{static_cast<std::int32_t>(joints_[j].stepper.speed())};
+    frame.speed[j] = StepsPerSecond{static_cast<std::int32_t>(joints_[j].stepper.speed().value)};
   }
   frame.homed = homing_.homed() | kSpareFlags;
   frame.io = level_flag(inputs_.in1, io_flag::kIn1) | level_flag(inputs_.in2, io_flag::kIn2) |

@@ -21,9 +21,10 @@ namespace armjig::parol6 {
 
 /// The clocks of one particular board.
 struct BoardTiming {
-  std::uint32_t pass_period_us = 10;  ///< of the main loop; the real one is not published. Not 0
+  /// Of the main loop, 1 us to 1 s; the real one is not published.
+  std::chrono::microseconds pass_period{10};
   std::uint32_t micros_at_start = 740'000;  ///< microsecond clock at time 0: start-up delays
-  std::uint32_t timer_at_start = 0;         ///< interval counter at time 0
+  Ticks timer_at_start{};                   ///< interval counter at time 0
   std::uint8_t timer_bits = 16;             ///< its width, 1 to 32
 
   friend bool operator==(const BoardTiming&, const BoardTiming&) = default;

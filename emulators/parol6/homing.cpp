@@ -11,9 +11,9 @@ enum JointIndex : std::size_t { kJ1, kJ2, kJ3, kJ4, kJ5, kJ6 };
 constexpr std::size_t kBaseJoints = 3;
 
 /// What the firmware sets on the joint when its final move has arrived.
-constexpr float kSpeedAfterJ4 = 2050.0F;
-constexpr float kSpeedAfterParkingJ6 = 1050.0F;
-constexpr float kSpeedAfterJ5 = 1050.0F;
+constexpr StepRate kSpeedAfterJ4{2050};
+constexpr StepRate kSpeedAfterParkingJ6{1050};
+constexpr StepRate kSpeedAfterJ5{1050};
 
 bool all(std::span<const bool> flags) noexcept {
   return std::ranges::all_of(flags, [](bool flag) { return flag; });
@@ -63,7 +63,7 @@ void Homing::seek(Joint& joint, bool& seen, Micros now) noexcept {
   if (joint.is_switch_pressed()) {
     seen = true;
     noticed_ = true;
-    joint.stepper.set_speed(0.0F);
+    joint.stepper.set_speed(StepRate{});
     joint.stepper.set_position(Steps{0});
   }
   joint.seek(now);

@@ -10,13 +10,13 @@
 
 namespace armjig::parol6 {
 
-/// The homing figures of one joint. Targets count from the switch; speeds in steps/s.
+/// The homing figures of one joint. Targets count from the switch.
 struct HomingParameters {
   Level pressed_level{};
-  float seek_speed{};
+  StepRate seek_speed{};
   Steps back_off_target{};
-  float back_off_speed{};
-  float slow_seek_speed{};
+  StepRate back_off_speed{};
+  StepRate slow_seek_speed{};
   StepsPerSecond2 acceleration{};
   Steps standby_from_switch{};  ///< end of the final move
   Steps standby{};              ///< what the counter is set to there
@@ -25,15 +25,18 @@ struct HomingParameters {
 /// docs/spec/parol6.md, "Homing". The final move of J6 first parks at `kParkingJ6`, out of the way
 /// of J5.
 inline constexpr std::array<HomingParameters, kJointCount> kHomingTable{{
-    {Level::kLow, -2050, Steps{850}, -2050, -750, StepsPerSecond2{4500}, Steps{13500},
-     Steps{10240}},
-    {Level::kHigh, -2550, Steps{1050}, 2050, -750, StepsPerSecond2{3000}, Steps{19588},
-     Steps{-32000}},
-    {Level::kHigh, -2550, Steps{1050}, 2050, -750, StepsPerSecond2{5000}, Steps{23020},
-     Steps{57905}},
-    {Level::kLow, 5550, Steps{-1550}, -4050, 4050, StepsPerSecond2{5500}, Steps{-10200}, Steps{0}},
-    {Level::kHigh, -5050, Steps{1550}, 4050, -4050, StepsPerSecond2{5500}, Steps{8900}, Steps{0}},
-    {Level::kLow, -9550, Steps{1550}, 4050, -8050, StepsPerSecond2{5500}, Steps{0}, Steps{32000}},
+    {Level::kLow, StepRate{-2050}, Steps{850}, StepRate{-2050}, StepRate{-750},
+     StepsPerSecond2{4500}, Steps{13500}, Steps{10240}},
+    {Level::kHigh, StepRate{-2550}, Steps{1050}, StepRate{2050}, StepRate{-750},
+     StepsPerSecond2{3000}, Steps{19588}, Steps{-32000}},
+    {Level::kHigh, StepRate{-2550}, Steps{1050}, StepRate{2050}, StepRate{-750},
+     StepsPerSecond2{5000}, Steps{23020}, Steps{57905}},
+    {Level::kLow, StepRate{5550}, Steps{-1550}, StepRate{-4050}, StepRate{4050},
+     StepsPerSecond2{5500}, Steps{-10200}, Steps{0}},
+    {Level::kHigh, StepRate{-5050}, Steps{1550}, StepRate{4050}, StepRate{-4050},
+     StepsPerSecond2{5500}, Steps{8900}, Steps{0}},
+    {Level::kLow, StepRate{-9550}, Steps{1550}, StepRate{4050}, StepRate{-8050},
+     StepsPerSecond2{5500}, Steps{0}, Steps{32000}},
 }};
 inline constexpr Steps kParkingJ6{15900};
 inline constexpr StepsPerSecond2 kParkingAccelerationJ6{10500};

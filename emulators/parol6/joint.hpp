@@ -32,7 +32,7 @@ struct Joint {
   [[nodiscard]] bool is_switch_pressed() const noexcept {
     return axis.switch_level() == pressed_level;
   }
-  [[nodiscard]] Steps position() const noexcept { return Steps{stepper.position()}; }
+  [[nodiscard]] Steps position() const noexcept { return stepper.position(); }
 
   void run_speed(Micros now) noexcept;
   void seek(Micros now) noexcept;

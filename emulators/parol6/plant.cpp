@@ -45,8 +45,8 @@ Plant standard_plant() noexcept {
     plant.axes[j].position = kPositions[j];
     plant.axes[j].limit = {
         .threshold = homing.standby - homing.standby_from_switch,
-        .side = homing.seek_speed > 0.0F ? LimitSwitch::Side::kAtOrAbove
-                                         : LimitSwitch::Side::kAtOrBelow,
+        .side = homing.seek_speed > StepRate{} ? LimitSwitch::Side::kAtOrAbove
+                                               : LimitSwitch::Side::kAtOrBelow,
         .closed_level = homing.pressed_level,
     };
   }

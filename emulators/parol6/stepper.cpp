@@ -35,16 +35,15 @@ std::int32_t wrapping_mul(std::int32_t a, std::int32_t b) noexcept {
 
 }  // namespace
 
-float go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept {
+StepRate go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept {
   constexpr std::int32_t kPerSecond = 100;  // close the distance in 10 ms
   const auto closing = wrapping_mul(kPerSecond, wrapping_sub(goal.value, position.value));
-  const std::int32_t mean = wrapping_add(feed.value, closing) / 2;
-  return static_cast<float>(mean);
+  return to_rate(StepsPerSecond{wrapping_add(feed.value, closing) / 2});
 }
 
 Stepper::Stepper() noexcept {
   set_acceleration(StepsPerSecond2{1.0F});
-  set_max_speed(1.0F);
+  set_max_speed(StepRate{1.0F});
 }
 
 std::int32_t Stepper::steps_to_stop() const noexcept {
@@ -90,11 +89,11 @@ void Stepper::compute_new_speed() noexcept {
   if (direction_ < 0) speed_ = -speed_;
 }
 
-void Stepper::set_max_speed(float steps_per_second) noexcept {
-  const float speed = std::abs(steps_per_second);
-  if (speed == max_speed_) return;
-  max_speed_ = speed;
-  min_interval_ = static_cast<float>(kMicrosPerSecond / static_cast<double>(speed));
+void Stepper::set_max_speed(StepRate speed) noexcept {
+  const float wanted = std::abs(speed.value);
+  if (wanted == max_speed_) return;
+  max_speed_ = wanted;
+  min_interval_ = static_cast<float>(kMicrosPerSecond / static_cast<double>(wanted));
   if (ramp_index_ > 0) {
     ramp_index_ = steps_to_stop();
     compute_new_speed();
@@ -112,16 +111,16 @@ void Stepper::set_acceleration(StepsPerSecond2 acceleration) noexcept {
   compute_new_speed();
 }
 
-void Stepper::set_speed(float steps_per_second) noexcept {
-  if (steps_per_second == speed_) return;
-  const float speed = std::clamp(steps_per_second, -max_speed_, max_speed_);
-  if (speed == 0.0F) {
+void Stepper::set_speed(StepRate speed) noexcept {
+  if (speed.value == speed_) return;
+  const float clamped = std::clamp(speed.value, -max_speed_, max_speed_);
+  if (clamped == 0.0F) {
     interval_ = 0;
   } else {
-    interval_ = interval_of(speed);
-    direction_ = speed > 0.0F ? 1 : -1;
+    interval_ = interval_of(clamped);
+    direction_ = clamped > 0.0F ? 1 : -1;
   }
-  speed_ = speed;
+  speed_ = clamped;
 }
 
 void Stepper::move_to(Steps target) noexcept {

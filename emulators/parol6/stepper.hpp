@@ -40,21 +40,21 @@ class Stepper {
  public:
   Stepper() noexcept;
 
-  [[nodiscard]] std::int32_t position() const noexcept { return position_; }
-  [[nodiscard]] std::int32_t target() const noexcept { return target_; }
-  /// Steps/s; negative backward. Set, not measured.
-  [[nodiscard]] float speed() const noexcept { return speed_; }
+  [[nodiscard]] Steps position() const noexcept { return Steps{position_}; }
+  [[nodiscard]] Steps target() const noexcept { return Steps{target_}; }
+  /// Negative backward. Set, not measured.
+  [[nodiscard]] StepRate speed() const noexcept { return StepRate{speed_}; }
   /// Of the next step: +1 or -1. Not always the sign of the speed.
   [[nodiscard]] std::int32_t direction() const noexcept { return direction_; }
   [[nodiscard]] std::uint32_t interval_us() const noexcept { return interval_; }
   [[nodiscard]] std::int32_t ramp_index() const noexcept { return ramp_index_; }
   [[nodiscard]] bool is_running() const noexcept { return speed_ != 0.0F || target_ != position_; }
 
-  void set_max_speed(float steps_per_second) noexcept;
+  void set_max_speed(StepRate speed) noexcept;
   void set_acceleration(StepsPerSecond2 acceleration) noexcept;
   /// Sets a constant speed, clamped to the maximum. Asking for the speed that is set already does
   /// nothing at all, not even to the direction (parol6.step.same-speed-keeps-direction).
-  void set_speed(float steps_per_second) noexcept;
+  void set_speed(StepRate speed) noexcept;
   void move_to(Steps target) noexcept;
   /// Re-defines the counter; the joint stands still afterwards.
   void set_position(Steps position) noexcept;
@@ -102,6 +102,6 @@ class Stepper {
 
 /// The board's go-to law: the mean of the feed speed and of the speed that would close the
 /// distance in 10 ms, in wrapping 32-bit integers, halved toward zero.
-[[nodiscard]] float go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept;
+[[nodiscard]] StepRate go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept;
 
 }  // namespace armjig::parol6

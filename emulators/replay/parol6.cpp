@@ -96,11 +96,12 @@ Outcome<Recording> read_header(const Trace& trace) {
   const auto header = Json::parse(trace.header, nullptr, /*allow_exceptions=*/false);
   HeaderReader reader;
   Recording recording;
-  recording.timing.pass_period_us = reader.integer<std::uint32_t>(header, "loop_us", 1, 1'000'000);
+  recording.timing.pass_period =
+      std::chrono::microseconds{reader.integer<std::uint32_t>(header, "loop_us", 1, 1'000'000)};
   recording.timing.micros_at_start =
       reader.integer<std::uint32_t>(header, "micros_at_t0", 0, UINT32_MAX);
   recording.timing.timer_at_start =
-      reader.integer<std::uint32_t>(header, "tim2_at_t0", 0, UINT32_MAX);
+      Ticks{reader.integer<std::uint32_t>(header, "tim2_at_t0", 0, UINT32_MAX)};
   recording.timing.timer_bits = reader.integer<std::uint8_t>(header, "tim2_bits", 1, 32);
   // "Passes start while virtual time is below": the last moment is just before.
   const auto duration_us =

@@ -65,6 +65,8 @@ struct Percent {
 
 using Steps = Quantity<unit::Steps, std::int32_t>;
 using StepsPerSecond = Quantity<unit::StepsPerSecond, std::int32_t>;
+/// The same unit in the single precision that step generators compute with.
+using StepRate = Quantity<unit::StepsPerSecond, float>;
 using StepsPerSecond2 = Quantity<unit::StepsPerSecond2, float>;
 using Ticks = Quantity<unit::Ticks, std::uint32_t>;
 using Degrees = Quantity<unit::Degrees, double>;
@@ -72,6 +74,11 @@ using Radians = Quantity<unit::Radians, double>;
 using Millimetres = Quantity<unit::Millimetres, double>;
 using MillimetresPerSecond = Quantity<unit::MillimetresPerSecond, double>;
 using Milliamperes = Quantity<unit::Milliamperes, std::int16_t>;
+/// Exact below 2^24.
+[[nodiscard]] constexpr StepRate to_rate(StepsPerSecond speed) noexcept {
+  return StepRate{static_cast<float>(speed.value)};
+}
+
 /// A set-point as a share of what the joint can do, 0 to 100.
 using Percent = Quantity<unit::Percent, double>;
 

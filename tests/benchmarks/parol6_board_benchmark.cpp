@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr BoardTiming kTiming{.pass_period_us = 20};
+constexpr BoardTiming kTiming{.pass_period = std::chrono::microseconds{20}};
 constexpr auto kTick = 10ms;  // 100 Hz
 constexpr int kTicksPerRound = 100;
 

@@ -57,14 +57,27 @@ def exchange(port, code, **fields):
 
 
 def cycle(port, code, seconds, **fields):
-    """100 Hz frames for that long; all answers, and the time the board saw between the outer two."""
+    """`cycle_once`, again if the machine was too busy: the timing field wraps after 93 ms."""
+    for _ in range(10):
+        answers, elapsed, longest_gap = cycle_once(port, code, seconds, **fields)
+        if longest_gap < 0.08:
+            return answers, elapsed
+    raise AssertionError("this machine cannot keep a period of 80 ms")
+
+
+def cycle_once(port, code, seconds, **fields):
+    """100 Hz frames for that long; all answers, the time the board saw between the outer two, and
+    the longest time between two frames here."""
     answers = []
-    due = time.monotonic()
+    gaps = [0.0]
+    due = sent = time.monotonic()
     while len(answers) < round(seconds / PERIOD):
+        gaps.append(time.monotonic() - sent)
+        sent = time.monotonic()
         answers.append(exchange(port, code, **fields))
         due += PERIOD
         time.sleep(max(0.0, due - time.monotonic()))
-    return answers, sum(answer.seconds for answer in answers[1:])
+    return answers, sum(answer.seconds for answer in answers[1:]), max(gaps)
 
 
 def check(port):

@@ -133,7 +133,7 @@ TEST(Arm, AnswersToItsNodeOnly) {
 
 TEST(Arm, OutlivesTheSleepOfTheDemo) {
   // A host that goes on polling while the board sleeps for 2 s gets all its answers at the end.
-  Arm arm{ArmOptions{.timing = {.pass_period_us = 20}}};
+  Arm arm{ArmOptions{.timing = {.pass_period = std::chrono::microseconds{20}}}};
   Duration now{};
   std::vector<Duration> answers;
   for (; now < 25s; now += 10ms) {

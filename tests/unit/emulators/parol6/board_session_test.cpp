@@ -47,9 +47,9 @@ std::string difference(Board& expected, Board& actual) {
     const auto& got = actual.joints()[j];
     if (wanted == got) continue;
     std::ostringstream out;
-    out << "J" << j + 1 << ": expected counter " << wanted.stepper.position() << " speed "
-        << wanted.stepper.speed() << " axis " << wanted.axis.position.value << ", actual "
-        << got.stepper.position() << " speed " << got.stepper.speed() << " axis "
+    out << "J" << j + 1 << ": expected counter " << wanted.stepper.position().value << " speed "
+        << wanted.stepper.speed().value << " axis " << wanted.axis.position.value << ", actual "
+        << got.stepper.position().value << " speed " << got.stepper.speed().value << " axis "
         << got.axis.position.value;
     return out.str();
   }
@@ -77,7 +77,7 @@ void expect_same(const Session& session, Board& expected, Board& actual, std::ui
     const auto found = difference(expected, actual);
     ASSERT_EQ(found, "") << "seed " << seed << ", action " << i << " ("
                          << (is_end ? "end" : session.actions[i].what) << ") at "
-                         << microseconds(time) << " us, pass " << session.timing.pass_period_us
+                         << microseconds(time) << " us, pass " << session.timing.pass_period.count()
                          << " us";
   }
 }

@@ -630,8 +630,8 @@ TEST(Homing, HitsEachSwitchWhenTheFirmwareDoes) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto before = std::exchange(last_speeds[j], speeds(desk.board)[j]);
       if (last_speeds[j] == before) continue;
-      if (before == kHomingTable[j].seek_speed && hit[j] == 0.0) hit[j] = seconds;
-      if (before == kHomingTable[j].slow_seek_speed) second_hit[j] = seconds;
+      if (before == kHomingTable[j].seek_speed.value && hit[j] == 0.0) hit[j] = seconds;
+      if (before == kHomingTable[j].slow_seek_speed.value) second_hit[j] = seconds;
     }
   }
   const auto near = [](double time) { return testing::DoubleNear(time, 0.0006); };

@@ -38,7 +38,7 @@ namespace armjig::parol6 {
 
 [[nodiscard]] inline std::array<float, kJointCount> speeds(const Board& board) {
   std::array<float, kJointCount> speeds{};
-  for (std::size_t j = 0; j < kJointCount; ++j) speeds[j] = board.joints()[j].stepper.speed();
+  for (std::size_t j = 0; j < kJointCount; ++j) speeds[j] = board.joints()[j].stepper.speed().value;
   return speeds;
 }
 
@@ -102,7 +102,7 @@ class Desk {
 
 /// The hidden start of the reference's homing timeline, section 6.6.
 [[nodiscard]] inline Board board_with_pass(std::uint32_t pass_us) {
-  return Board{standard_plant(), BoardTiming{.pass_period_us = pass_us}};
+  return Board{standard_plant(), BoardTiming{.pass_period = std::chrono::microseconds{pass_us}}};
 }
 
 }  // namespace armjig::parol6

@@ -28,11 +28,11 @@ std::int32_t number(Dice& dice, std::int64_t least, std::int64_t most) {
 BoardTiming random_timing(Dice& dice) {
   constexpr std::array<std::uint32_t, 8> kPasses{10, 20, 20, 20, 25, 37, 50, 100};
   BoardTiming timing;
-  timing.pass_period_us = one_of(dice, kPasses);
+  timing.pass_period = std::chrono::microseconds{one_of(dice, kPasses)};
   // Half of the sessions see the microsecond clock wrap.
   timing.micros_at_start = dice.one_in(2) ? static_cast<std::uint32_t>(-dice.between(1, 30'000'000))
                                           : static_cast<std::uint32_t>(dice.between(0, 1'000'000));
-  timing.timer_at_start = static_cast<std::uint32_t>(dice.between(0, UINT32_MAX));
+  timing.timer_at_start = Ticks{static_cast<std::uint32_t>(dice.between(0, UINT32_MAX))};
   timing.timer_bits = dice.one_in(2) ? 16 : 32;
   return timing;
 }

@@ -14,7 +14,7 @@ namespace {
 
 Stepper stepper_with(float acceleration, float max_speed = 50'000.0F) {
   Stepper stepper;
-  stepper.set_max_speed(max_speed);
+  stepper.set_max_speed(StepRate{max_speed});
   stepper.set_acceleration(StepsPerSecond2{acceleration});
   return stepper;
 }
@@ -31,11 +31,11 @@ TEST(Stepper, TruncatesASpeedToAWholeInterval) {
         Row{750, 1333}, Row{4050, 246}, Row{8050, 124}, Row{1000, 1000}, Row{150, 6666},
         Row{100, 10000}, Row{7, 142857}, Row{3, 333333}, Row{50000, 20}}) {
     auto stepper = stepper_with(1000);
-    stepper.set_speed(speed);
+    stepper.set_speed(StepRate{speed});
     EXPECT_EQ(stepper.interval_us(), interval) << speed;
-    EXPECT_EQ(stepper.speed(), speed);
+    EXPECT_EQ(stepper.speed().value, speed);
     EXPECT_EQ(stepper.direction(), 1);
-    stepper.set_speed(-speed);
+    stepper.set_speed(StepRate{-speed});
     EXPECT_EQ(stepper.interval_us(), interval) << -speed;
     EXPECT_EQ(stepper.direction(), -1);
   }
@@ -43,9 +43,9 @@ TEST(Stepper, TruncatesASpeedToAWholeInterval) {
 
 TEST(Stepper, ClampsASpeedToTheMaximum) {
   auto stepper = stepper_with(1000);
-  stepper.set_speed(-99'999);
+  stepper.set_speed(StepRate{-99'999});
   EXPECT_EQ(stepper.interval_us(), 20U);
-  EXPECT_EQ(stepper.speed(), -50'000.0F);
+  EXPECT_EQ(stepper.speed().value, -50'000.0F);
 }
 
 TEST(Stepper, AcceleratesFromRestAsTheLibraryDoes) {
@@ -59,7 +59,7 @@ TEST(Stepper, AcceleratesFromRestAsTheLibraryDoes) {
   std::uint32_t now = 0;
   for (std::size_t i = 0; i < kIntervals.size(); ++i) {
     EXPECT_EQ(stepper.interval_us(), kIntervals[i]) << i;
-    EXPECT_EQ(stepper.speed(), kSpeeds[i]) << i;
+    EXPECT_EQ(stepper.speed().value, kSpeeds[i]) << i;
     now += stepper.interval_us();
     stepper.run(Micros{now});
   }
@@ -76,36 +76,36 @@ TEST(Stepper, BeginsARampWithTheFirstInterval) {
         Row{5500, 12890.8}, Row{6000, 12342.0}, Row{7500, 11039.0}, Row{10500, 9329.7}}) {
     auto stepper = stepper_with(acceleration);
     stepper.move_to(Steps{1000});
-    EXPECT_NEAR(1e6 / double{stepper.speed()}, interval, 0.06) << acceleration;
+    EXPECT_NEAR(1e6 / double{stepper.speed().value}, interval, 0.06) << acceleration;
   }
 }
 
 TEST(Stepper, StepsAtOnceIfTheLastStepIsLongAgo) {
   auto stepper = stepper_with(1000);
-  stepper.set_speed(3);
+  stepper.set_speed(StepRate{3});
   EXPECT_FALSE(stepper.run_speed(Micros{333'332}));
   EXPECT_TRUE(stepper.run_speed(Micros{333'333}));
   EXPECT_FALSE(stepper.run_speed(Micros{333'334}));
   EXPECT_TRUE(stepper.run_speed(Micros{10'000'000}));
   EXPECT_FALSE(stepper.run_speed(Micros{10'000'001})) << "lateness is not made up for";
-  EXPECT_EQ(stepper.position(), 2);
+  EXPECT_EQ(stepper.position().value, 2);
 }
 
 TEST(Stepper, KeepsItsDirectionIfTheSameSpeedIsSetAgain) {
   auto stepper = stepper_with(1000);
-  stepper.set_speed(-2050);
+  stepper.set_speed(StepRate{-2050});
   stepper.move_to(Steps{2});
-  stepper.set_speed(-2050);  // the ramp of move_to has set another one
+  stepper.set_speed(StepRate{-2050});  // the ramp of move_to has set another one
   EXPECT_TRUE(stepper.run_speed_to_position(Micros{1'000'000}));
-  EXPECT_EQ(stepper.position(), 1);
-  stepper.set_speed(-2050);
+  EXPECT_EQ(stepper.position().value, 1);
+  stepper.set_speed(StepRate{-2050});
   EXPECT_TRUE(stepper.run_speed(Micros{2'000'000}));
-  EXPECT_EQ(stepper.position(), 2) << "moves forward at -2050";
+  EXPECT_EQ(stepper.position().value, 2) << "moves forward at -2050";
 }
 
 TEST(Stepper, WaitsAcrossTheWrapOfTheClock) {
   auto stepper = stepper_with(1000);
-  stepper.set_speed(1000);
+  stepper.set_speed(StepRate{1000});
   ASSERT_TRUE(stepper.run_speed(Micros{0xFFFF'FF00}));
   EXPECT_FALSE(stepper.run_speed(Micros{0xFFFF'FF00U + 999}));
   EXPECT_TRUE(stepper.run_speed(Micros{0xFFFF'FF00U + 1000}));
@@ -115,8 +115,8 @@ TEST(Stepper, StandsStillAfterItsCounterIsSet) {
   auto stepper = stepper_with(1000);
   stepper.move_to(Steps{1000});
   stepper.set_position(Steps{-5});
-  EXPECT_EQ(stepper.position(), -5);
-  EXPECT_EQ(stepper.target(), -5);
+  EXPECT_EQ(stepper.position().value, -5);
+  EXPECT_EQ(stepper.target().value, -5);
   EXPECT_FALSE(stepper.is_running());
   EXPECT_FALSE(stepper.run(Micros{1'000'000'000}));
 }
@@ -160,13 +160,13 @@ TEST_P(StepperMove, TakesTheTimeThatTheFirmwareTakes) {
   std::uint32_t time = 0;
   float peak = 0.0F;
   for (; stepper.is_running(); ++time) {
-    peak = std::max(peak, std::abs(stepper.speed()));
+    peak = std::max(peak, std::abs(stepper.speed().value));
     stepper.run(Micros{kLongAfterTheLastStep + time});
     ASSERT_LT(time, 20'000'000U);
   }
   EXPECT_EQ(time - 1, move.duration_us) << "the first step is at time 0";
   EXPECT_NEAR(peak, move.peak, move.peak * 5e-6F);
-  EXPECT_EQ(stepper.position(), move.distance);
+  EXPECT_EQ(stepper.position().value, move.distance);
 }
 
 std::string id_of(const testing::TestParamInfo<Move>& move) { return move.param.id; }
@@ -196,13 +196,13 @@ TEST(Stepper, CarriesItsSpeedIntoTheSecondLegOfJ6) {  // S15
   stepper.move_to(Steps{15'900});
   for (; stepper.is_running(); ++now) stepper.run(Micros{now});
   const auto arrival = now - 1;
-  stepper.set_speed(1050);
+  stepper.set_speed(StepRate{1050});
   stepper.set_acceleration(StepsPerSecond2{5500});
-  EXPECT_EQ(stepper.speed(), -77.5746155F);
+  EXPECT_EQ(stepper.speed().value, -77.5746155F);
   EXPECT_EQ(stepper.ramp_index(), 1);
   EXPECT_EQ(stepper.interval_us(), 12'890U);
   stepper.move_to(Steps{0});
-  EXPECT_EQ(stepper.speed(), -129.291031F);
+  EXPECT_EQ(stepper.speed().value, -129.291031F);
   EXPECT_EQ(stepper.ramp_index(), 2);
   EXPECT_EQ(stepper.interval_us(), 7734U);
   for (; stepper.is_running(); ++now) stepper.run(Micros{now});
@@ -213,7 +213,7 @@ TEST(Stepper, CarriesItsSpeedIntoTheSecondLegOfJ6) {  // S15
 
 TEST(GoToSpeed, IsTheMeanOfFeedAndClosingSpeedTowardZero) {
   const auto law = [](std::int32_t goal, std::int32_t feed) {
-    return go_to_speed(Steps{0}, Steps{goal}, StepsPerSecond{feed});
+    return go_to_speed(Steps{0}, Steps{goal}, StepsPerSecond{feed}).value;
   };
   EXPECT_EQ(law(100, 200), 5100.0F);
   EXPECT_EQ(law(-100, -200), -5100.0F);
@@ -225,7 +225,7 @@ TEST(GoToSpeed, IsTheMeanOfFeedAndClosingSpeedTowardZero) {
 }
 
 TEST(GoToSpeed, HoldsOverThe24BitRange) {
-  EXPECT_EQ(go_to_speed(Steps{-8'388'608}, Steps{8'388'607}, StepsPerSecond{8'388'607}),
+  EXPECT_EQ(go_to_speed(Steps{-8'388'608}, Steps{8'388'607}, StepsPerSecond{8'388'607}).value,
             static_cast<float>((8'388'607 + 100 * 16'777'215) / 2));
 }
 
@@ -247,7 +247,7 @@ TEST(StepperSpan, AtConstantSpeedEqualsItsPasses) {
   test::Dice dice{51};
   for (int round = 0; round < 2000; ++round) {
     auto plain = stepper_with(1000);
-    plain.set_speed(static_cast<float>(dice.between(-60'000, 60'000)));
+    plain.set_speed(StepRate{static_cast<float>(dice.between(-60'000, 60'000))});
     auto closed = plain;
     for (int part = 0; part < 3; ++part) {
       const auto passes = span(dice.between(0, 200'000), dice.between(1, 3000),
@@ -263,14 +263,14 @@ TEST(StepperSpan, StopsInFrontOfTheStepThatIsOneTooMany) {
   test::Dice dice{52};
   for (int round = 0; round < 500; ++round) {
     auto plain = stepper_with(1000);
-    plain.set_speed(static_cast<float>(dice.between(100, 50'000)));
+    plain.set_speed(StepRate{static_cast<float>(dice.between(100, 50'000))});
     auto closed = plain;
     const auto passes = span(0, 5000, static_cast<std::uint32_t>(dice.between(1, 50)));
     const auto most = dice.between(0, 20);
     std::int64_t next = kNoPass;
     for (auto time = passes.first; time <= passes.last && next == kNoPass; time += passes.period) {
       auto trial = plain;
-      if (trial.run_speed(passes.clock(time)) && trial.position() > most) {
+      if (trial.run_speed(passes.clock(time)) && trial.position().value > most) {
         next = time;
       } else {
         plain = trial;
@@ -291,7 +291,7 @@ TEST(StepperSpan, OfTheGoToLawEqualsItsPasses) {
     const auto passes = span(dice.between(0, 200'000), dice.between(1, 5000),
                              static_cast<std::uint32_t>(dice.between(1, 100)));
     each_pass(passes, [&](Micros now) {
-      plain.set_speed(go_to_speed(Steps{plain.position()}, goal, feed));
+      plain.set_speed(go_to_speed(plain.position(), goal, feed));
       plain.run_speed(now);
     });
     closed.coast_go_to(passes, goal, feed);
@@ -313,18 +313,19 @@ TEST(StepperSpan, OfARampStopsInFrontOfTheLanding) {
     ASSERT_EQ(closed, plain) << "round " << round;
     if (landing == kNoPass) continue;
     EXPECT_TRUE(plain.run(passes.clock(landing)));
-    EXPECT_EQ(plain.position(), plain.target());
+    EXPECT_EQ(plain.position().value, plain.target().value);
   }
 }
 
 TEST(StepperSpan, OfAWeekAtFullSpeedLosesNoStep) {
   // More steps than 32 bits count: 7 days at 50,000 steps/s, one step in 20 us.
   auto stepper = stepper_with(1000);
-  stepper.set_speed(50'000);
+  stepper.set_speed(StepRate{50'000});
   constexpr std::int64_t kPasses = INT64_C(7) * 24 * 3600 * 50'000;
   const auto week = span(0, kPasses, 20);
   EXPECT_EQ(stepper.coast_speed(week), kNoPass);
-  EXPECT_EQ(stepper.position(), static_cast<std::int32_t>(static_cast<std::uint32_t>(kPasses)));
+  EXPECT_EQ(stepper.position().value,
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(kPasses)));
   EXPECT_FALSE(stepper.run_speed(week.clock(week.last)));
   EXPECT_TRUE(stepper.run_speed(week.clock(week.last + 20)));
 }
