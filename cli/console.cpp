@@ -208,6 +208,7 @@ class TerminalSession {
       if (!line) break;
       console_.begin(*line);
     }
+    is_leaving_ = true;
     if (!problem_) {
       if (const auto left = leave(console_); !left) problem_ = left.error();
     }
@@ -217,10 +218,11 @@ class TerminalSession {
  private:
   void greet(const RigOptions& how) {
     const auto& target = options_.target.target;
-    fmt::print("{} at {}. Tab completes, Ctrl-C stops the arm, 'help' lists the commands.\n",
+    fmt::print("{} at {}\n'help' lists the commands, Tab completes, Ctrl-C stops the arm.\n",
                options_.device, target);
     if (!how.target.is_emulated() && options_.target.allow.empty()) {
-      fmt::print("Only looking is allowed; to do more, start with --allow state,move,home,grip.\n");
+      fmt::print(
+          "Nothing but looking is allowed: --allow state,move,home,grip lets you do more.\n");
     }
     const auto is_there = hears_the_board(console_);
     if (!is_there) problem_ = is_there.error();
@@ -248,6 +250,7 @@ class TerminalSession {
   }
 
   void say(Tone tone, std::string_view text) {
+    if (is_leaving_ && tone == Tone::kAnswer) return;
     const auto* const mark = tone == Tone::kAnswer ? "" : tone == Tone::kEvent ? "* " : "! ";
     editor_.print(fmt::format("{}{}\n", mark, text));
   }
@@ -258,6 +261,7 @@ class TerminalSession {
   Parol6Console console_;
   Pace pace_;
   std::optional<Problem> problem_;
+  bool is_leaving_ = false;
 };
 
 Exit console(const Options& options) {

@@ -22,6 +22,7 @@ constexpr auto kHelp =
     "  armjig emulate parol6 --link /tmp/parol6     the same, under a name that stays\n"
     "  armjig emulate parol6 --tcp 4000             as a byte stream on TCP, this machine only\n"
     "  armjig emulate parol6 --tcp 0 --pty --json   both, any free port, for scripts\n"
+    "  armjig emulate parol6 --set fault=swap-bytes:speed.j1   a faulty one\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
@@ -29,6 +30,7 @@ constexpr auto kHelp =
 
 struct Options {
   std::string device;
+  std::vector<std::string> settings;
   bool wants_pty = false;
   PtyOptions pty;
   bool wants_tcp = false;
@@ -84,8 +86,22 @@ void print_statistics(const HostStatistics& statistics) {
   }
 }
 
+Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) {
+  DeviceOptions options;
+  for (const auto& setting : settings) {
+    const auto equals = setting.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      return problem(ErrorCode::kBadValue, "--set " + setting, "write NAME=VALUE");
+    }
+    options[setting.substr(0, equals)] = setting.substr(equals + 1);
+  }
+  return options;
+}
+
 Exit emulate(const Options& options) {
-  auto device = make_hosted_device(options.device);
+  const auto settings = parse_settings(options.settings);
+  if (!settings) return report(settings.error());
+  auto device = make_hosted_device(options.device, *settings);
   if (!device) return report(device.error());
   auto host = Host::open(std::move(*device), host_options(options));
   if (!host) return report(host.error());
@@ -118,6 +134,10 @@ void add_emulate(CLI::App& app, Action& action) {
       ->add_option("--speed", options->speed,
                    "device time over wall time, 0.001 to 10000 (default: 1)")
       ->type_name("FACTOR");
+  command
+      ->add_option("--set", options->settings,
+                   "an option of the device, as in emulated: targets; may be repeated")
+      ->type_name("NAME=VALUE");
   command->add_flag("--json", options->wants_json, "say where it listens as one line of JSON");
   command->callback([options, tcp, &action] {
     options->wants_tcp = tcp->count() > 0;

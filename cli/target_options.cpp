@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "emulators/host/emulated_target.hpp"
+#include "emulators/host/devices.hpp"
 
 namespace armjig::cli {
 
@@ -43,7 +43,7 @@ Outcome<RigOptions> parse_target_options(const TargetOptions& options) {
 }
 
 Outcome<Rig> open_rig(std::string_view device, const RigOptions& options) {
-  return Rig::open(device, options, emulated_target(device).open);
+  return Rig::open(device, options, hosted_device(device).open);
 }
 
 Outcome<Rig> open_rig(std::string_view device, const TargetOptions& options) {

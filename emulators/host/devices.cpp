@@ -7,27 +7,42 @@
 #include <utility>
 
 #include "emulators/demo/demo.hpp"
-#include "emulators/host/emulated_target.hpp"
+#include "emulators/host/parol6_options.hpp"
+#include "harness/link/memory_stream.hpp"
 
 namespace armjig {
 namespace {
 
-using Made = Outcome<std::unique_ptr<HostedStream>>;
-
-Made make_demo(const HostedOptions& options, const std::string& where) {
-  if (options.empty()) return make_hosted(demo::StreamDevice{});
+Outcome<demo::StreamDevice> make_demo(const DeviceOptions& options, const std::string& where) {
+  if (options.empty()) return demo::StreamDevice{};
   return problem(ErrorCode::kUnknownOption, where, "the demo device has no options");
 }
 
-Made make_parol6(const HostedOptions& options, const std::string& where) {
-  auto arm = parol6::make_arm(options, where);
-  if (!arm) return tl::unexpected{arm.error()};
-  return make_hosted(*std::move(arm));
+/// A device behind a link of the operating system.
+template <auto make>
+Outcome<std::unique_ptr<HostedStream>> host(const DeviceOptions& options,
+                                            const std::string& where) {
+  auto device = make(options, where);
+  if (!device) return tl::unexpected{device.error()};
+  return make_hosted(*std::move(device));
+}
+
+/// The same device in memory.
+template <auto make>
+Outcome<std::unique_ptr<StreamPort>> open(const Target& target) {
+  auto device = make(target.options, target.text);
+  if (!device) return tl::unexpected{device.error()};
+  return std::make_unique<MemoryStream<typename decltype(device)::value_type>>(*std::move(device));
+}
+
+template <auto make>
+constexpr HostEntry entry(std::string_view device) noexcept {
+  return {device, host<make>, open<make>};
 }
 
 constexpr std::array kDevices{
-    HostEntry{.device = "demo", .make = make_demo},
-    HostEntry{.device = "parol6", .make = make_parol6},
+    entry<make_demo>("demo"),
+    entry<parol6::make_arm>("parol6"),
 };
 
 std::string all_names() {
@@ -43,8 +58,12 @@ std::string all_names() {
 
 std::span<const HostEntry> hosted_devices() noexcept { return kDevices; }
 
+const HostEntry& hosted_device(std::string_view device) noexcept {
+  return *std::ranges::find(kDevices, device, &HostEntry::device);
+}
+
 Outcome<std::unique_ptr<HostedStream>> make_hosted_device(const std::string& device,
-                                                          const HostedOptions& options) {
+                                                          const DeviceOptions& options) {
   const auto* const entry = std::ranges::find(kDevices, device, &HostEntry::device);
   if (entry == kDevices.end()) {
     return problem(ErrorCode::kUnknownDevice, device, "there are: " + all_names());

@@ -12,22 +12,23 @@
 
 namespace armjig {
 
-/// `NAME=VALUE`, the same as behind the question mark of an `emulated:` target.
-using HostedOptions = decltype(Target::options);
-
 /// A device that can be hosted on a byte stream. `make` names `where` the options came from in its
 /// problems: `kUnknownOption`, `kBadValue`.
 struct HostEntry {
   std::string_view device;
-  Outcome<std::unique_ptr<HostedStream>> (*make)(const HostedOptions& options,
+  Outcome<std::unique_ptr<HostedStream>> (*make)(const DeviceOptions& options,
                                                  const std::string& where);
+  OpenEmulated open;  ///< the same device in this process, on virtual time
 };
 
 /// All of them. This is the room's one list of devices.
 [[nodiscard]] std::span<const HostEntry> hosted_devices() noexcept;
 
+/// The entry of a device that has one.
+[[nodiscard]] const HostEntry& hosted_device(std::string_view device) noexcept;
+
 /// Problems: those of `make`, and `kUnknownDevice` with the names of all devices.
 [[nodiscard]] Outcome<std::unique_ptr<HostedStream>> make_hosted_device(
-    const std::string& device, const HostedOptions& options = {});
+    const std::string& device, const DeviceOptions& options = {});
 
 }  // namespace armjig

@@ -11,13 +11,16 @@
 
 namespace armjig {
 
+/// `NAME=VALUE` pairs that describe an emulated device.
+using DeviceOptions = std::map<std::string, std::string, std::less<>>;
+
 /// Where a device is, as users write it everywhere: `SCHEME:ADDRESS?OPTION=VALUE&...`, for example
 /// `pty:/dev/pts/5`, `tcp:127.0.0.1:4000`, `emulated:?fault=zero:echo`.
 struct Target {
   std::string text;  ///< as written
   std::string scheme;
   std::string address;
-  std::map<std::string, std::string, std::less<>> options;
+  DeviceOptions options;
 
   [[nodiscard]] bool is_emulated() const noexcept { return scheme == "emulated"; }
 };

@@ -4,14 +4,14 @@
 #include <cstdio>
 
 #include "conformance/suite.hpp"
-#include "emulators/host/emulated_target.hpp"
+#include "emulators/host/devices.hpp"
 #include "harness/rig/target.hpp"
 
 int main() {
   const auto& suite = *std::ranges::find(armjig::suites(), "parol6", &armjig::Suite::device);
   const auto target = armjig::parse_target("emulated:");
   const auto port =
-      target.and_then([&](const auto& t) { return armjig::emulated_target(suite.device).open(t); });
+      target.and_then([&](const auto& t) { return armjig::hosted_device(suite.device).open(t); });
   if (!port) {
     std::printf("%s\n", describe(port.error()).c_str());
     return 1;

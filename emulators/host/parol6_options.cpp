@@ -1,47 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "emulators/host/emulated_target.hpp"
+#include "emulators/host/parol6_options.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
-#include <memory>
+#include <cstdint>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "emulators/demo/demo.hpp"
-#include "harness/link/memory_stream.hpp"
 #include "harness/wire/parol6/fields.hpp"
+#include "harness/wire/parol6/frame.hpp"
 
-namespace armjig {
-namespace {
-
-Outcome<std::unique_ptr<StreamPort>> open_demo(const Target& target) {
-  if (!target.options.empty()) {
-    return problem(ErrorCode::kUnknownOption, target.text, "the demo device has no options");
-  }
-  return std::make_unique<MemoryStream<demo::StreamDevice>>(demo::StreamDevice{});
-}
-
-Outcome<std::unique_ptr<StreamPort>> open_parol6(const Target& target) {
-  auto arm = parol6::make_arm(target.options, target.text);
-  if (!arm) return tl::unexpected{arm.error()};
-  return std::make_unique<MemoryStream<Faulty<parol6::Arm>>>(*std::move(arm));
-}
-
-constexpr std::array kEmulatedTargets{
-    EmulatedTarget{"demo", open_demo},
-    EmulatedTarget{"parol6", open_parol6},
-};
-
-}  // namespace
-
-std::span<const EmulatedTarget> emulated_targets() noexcept { return kEmulatedTargets; }
-
-const EmulatedTarget& emulated_target(std::string_view device) noexcept {
-  return *std::ranges::find(kEmulatedTargets, device, &EmulatedTarget::device);
-}
-
-namespace parol6 {
+namespace armjig::parol6 {
 namespace {
 
 Outcome<std::uint32_t> parse_pass_period(const std::string& where, const std::string& text) {
@@ -96,5 +66,4 @@ Outcome<Faulty<Arm>> make_arm(const DeviceOptions& options, const std::string& w
   return Faulty{Arm{arm}, std::move(faults), kCommandFrameSize};
 }
 
-}  // namespace parol6
-}  // namespace armjig
+}  // namespace armjig::parol6
