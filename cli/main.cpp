@@ -3,6 +3,7 @@
 
 #include <array>
 #include <exception>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -21,12 +22,24 @@ constexpr auto kDescription =
     "  armjig emulate parol6 --link /tmp/parol6       an emulated board on a pseudo-terminal\n"
     "  armjig conformance parol6 --target pty:/tmp/parol6   is that board right?\n"
     "  armjig trace verify captures                   replay recordings of real devices\n"
-    "  armjig decode parol6 FFFFFF34...               what do these bytes mean?\n";
+    "  armjig decode parol6 FFFFFF34...               what do these bytes mean?\n"
+    "  armjig console parol6 --target emulated:       drive an arm by hand\n";
 
 constexpr auto kFooter =
     "Exit codes: 0 passed, 1 findings, 2 usage, 3 target or link, 4 nothing ran, 70 our bug, 130 "
     "interrupted.\n"
     "'armjig SUBCOMMAND --help' has examples.";
+
+/// In the list of subcommands, only the first line of each description: its examples belong to its
+/// own help.
+class FirstLines final : public CLI::Formatter {
+ public:
+  std::string make_subcommand(const CLI::App* sub) const override {
+    const auto description = sub->get_description();
+    return fmt::format("  {:<12} {}\n", sub->get_name(),
+                       description.substr(0, description.find('\n')));
+  }
+};
 
 bool is_option(std::string_view word) { return word.starts_with('-'); }
 
@@ -57,6 +70,7 @@ Exit exit_of(const CLI::App& app, const CLI::ParseError& error) {
 Exit run(int argc, char** argv) {
   CLI::App app{kDescription, "armjig"};
   app.footer(kFooter);
+  app.formatter(std::make_shared<FirstLines>());
   app.set_version_flag("--version", std::string{"armjig "} + kVersion);
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);

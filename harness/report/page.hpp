@@ -73,7 +73,8 @@ dt { color: var(--soft); font-size: .8rem; }
 .topic > header span { color: var(--soft); font-size: .85rem; white-space: nowrap; }
 .row + .row { border-top: 1px solid var(--line); }
 .row > summary { display: grid; gap: .15rem 1rem;
-  grid-template-columns: 7.6rem minmax(0, 20rem) minmax(0, 1fr) auto .6rem; align-items: baseline; padding: .6rem 1rem; cursor: pointer; list-style: none; }
+  grid-template-columns: 7.6rem minmax(0, 20rem) minmax(0, 1fr) auto .6rem;
+  align-items: baseline; padding: .6rem 1rem; cursor: pointer; list-style: none; }
 .row > summary::-webkit-details-marker { display: none; }
 .row > summary::after { content: "\203A" / ""; color: var(--soft); font-size: 1.2rem;
   line-height: 1; justify-self: center; transition: rotate .12s; }
@@ -234,7 +235,8 @@ inline constexpr const char* kTemplate = R"html(<!doctype html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src '{{{script_hash}}}';
+<meta http-equiv="Content-Security-Policy" content="default-src 'none';
+ style-src 'unsafe-inline'; script-src '{{{script_hash}}}';
  img-src data:; base-uri 'none'; form-action 'none'">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
