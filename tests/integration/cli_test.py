@@ -1,0 +1,125 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""The program as its users see it: cli_test.py ARMJIG SOURCE_DIR
+
+Each row is a command line, what goes to standard input, the exit code, and words that must be on
+standard output (or, with a leading "!", on standard error).
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ARMJIG = sys.argv[1]
+SOURCE = pathlib.Path(sys.argv[2])
+IDLE = "FFFFFF34" + "00" * 36 + "FF" + "00" * 12 + "E40102"
+RECORDING = SOURCE / "captures/parol6/outputs_sweep_a.jsonl"
+
+
+def corrupted(folder):
+    """A recording in which output 1 of the third answer is told the other way round."""
+    lines = RECORDING.read_text().splitlines()
+    answers = [i for i, line in enumerate(lines) if '"from_device"' in line]
+    line = json.loads(lines[answers[2]])
+    frame = bytearray.fromhex(line["hex"])
+    frame[41] ^= 0x20
+    line["hex"] = frame.hex()
+    lines[answers[2]] = json.dumps(line)
+    path = folder / "corrupted.jsonl"
+    path.write_text("\n".join(lines) + "\n")
+    return path, answers[2] + 1
+
+
+def written(folder, name, text):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def rows(folder):
+    different, line = corrupted(folder)
+    broken = written(folder, "broken.jsonl",
+                     RECORDING.read_text().splitlines()[0] + '\n{"t_us":0,"dir":"to_device"\n')
+    other = written(folder, "other.jsonl", '{"format":"golden-trace/1","device":"toaster"}\n')
+    faulty = "emulated:?fault=swap-bytes:speed.j1"
+    return [
+        # Misuse: one clear line, exit code 2.
+        ("", "", 2, ["!subcommand is required"]),
+        ("frobnicate", "", 2, ["!no subcommand 'frobnicate'", "!conformance"]),
+        ("conformance parol6", "", 2, ["!--target"]),
+        ("conformance parol7 --target emulated:", "", 2, ["!parol7"]),
+        ("conformance parol6 --target nonsense", "", 2, ["!'nonsense'"]),
+        ("conformance parol6 --target emulated:?x=1", "", 2, ["!no such option"]),
+        ("conformance parol6 --target emulated: --allow fly", "", 2, ["!--allow fly"]),
+        ("conformance parol6 --target emulated: --impair loss=x", "", 2, ["!loss"]),
+        ("decode parol6 F", "", 2, ["!hexadecimal digit is missing"]),
+        ("decode parol6 --file /nonexistent", "", 2, ["!/nonexistent"]),
+        ("emulate parol6 --speed 0", "", 2, ["!speed"]),
+        ("emulate parol6 --set fault=zero:nothing", "", 2, ["!fields: start"]),
+        ("trace verify /nonexistent", "", 2, ["!/nonexistent"]),
+        # Targets that are not there: 3. Nothing selected: 4.
+        ("conformance parol6 --target pty:/nonexistent", "", 3, ["!/nonexistent"]),
+        ("conformance parol6 --target emulated: --filter nothing-like-that", "", 4, ["!--list"]),
+        (f"trace verify {other}", "", 4, ["!toaster", "traces: 0 identical: 0 different: 0"]),
+        # What it is for.
+        ("--version", "", 0, ["armjig 0."]),
+        ("--help", "", 0, ["armjig emulate parol6", "Exit codes"]),
+        ("conformance parol6 --list", "", 0, ["parol6.frame.burst"]),
+        ("conformance parol6 --explain parol6.frame.burst", "", 0, ["must", "source"]),
+        ("conformance parol6 --target emulated:", "", 0, ["15 passed, 0 failed"]),
+        ("conformance demo --target emulated:", "", 0, ["2 passed, 0 failed"]),
+        (f"conformance parol6 --target {faulty}", "", 1,
+         ["expected     speed.j1", "FF FF FF 38", f"--target '{faulty}' --filter"]),
+        (f"decode parol6 {IDLE}", "", 0, ["command            255 (idle)"]),
+        ("decode parol6 --file - --json", IDLE, 0, ['"armjig.message/1"', '"text":"255 (idle)"']),
+        ("decode parol6 --file -", "", 4, ["!no bytes"]),
+        (f"decode parol6 --direction to-device {IDLE[:40]}", "", 1, ["cut short"]),
+        (f"decode parol6 --file {RECORDING}", "", 0, ["out1"]),
+        (f"trace verify {RECORDING}", "", 0, ["identical", "traces: 1 identical: 1 different: 0"]),
+        (f"trace verify {different} {RECORDING}", "", 1,
+         [f"corrupted.jsonl:{line}:", "io: expected", "traces: 2 identical: 1 different: 1"]),
+        (f"trace verify {broken} {RECORDING}", "", 2,
+         ["!broken.jsonl:2:", "traces: 1 identical: 1 different: 0"]),
+        ("completion bash", "", 0, ["_armjig"]),
+        ("watch parol6 --target emulated: --seconds 2", "", 0, ["estop released", "0 lost"]),
+        ("watch parol6 --target emulated: --seconds 1 --json", "", 0, ["armjig.telemetry/1"]),
+        ("console parol6 --target emulated:", "enable\njog j1 500 0.2\n# a remark\nstatus\nquit\n",
+         0, ["j1           100"]),
+        ("console parol6 --target emulated:", "home\nstatus\n", 0, ["homed"]),
+        ("console parol6 --target emulated:", "disable\njog j1 500 1\n", 1, ["!line 2"]),
+        ("console parol6 --target emulated:", "frobnicate\n", 2, ["!line 1", "!frobnicate"]),
+    ]
+
+
+def check(arguments, typed, exit_code, words):
+    """What is wrong, or nothing."""
+    run = subprocess.run([ARMJIG] + arguments.split(), input=typed, capture_output=True, text=True,
+                         timeout=120)
+    complaints = [] if run.returncode == exit_code else [f"exit code {run.returncode}, not {exit_code}"]
+    for word in words:
+        stream, wanted = (run.stderr, word[1:]) if word.startswith("!") else (run.stdout, word)
+        if wanted not in stream:
+            complaints.append(f"no '{wanted}'")
+    if any(word.startswith("!") for word in words) and len(run.stderr.splitlines()) > 3:
+        complaints.append("more than a few lines of errors")
+    if complaints:
+        complaints.append(f"\n--- stdout\n{run.stdout[-2000:]}\n--- stderr\n{run.stderr[-2000:]}")
+    return ", ".join(complaints)
+
+
+def main():
+    failures = 0
+    with tempfile.TemporaryDirectory() as name:
+        table = rows(pathlib.Path(name))
+        for row in table:
+            complaint = check(*row)
+            if complaint:
+                failures += 1
+                print(f"armjig {row[0]}: {complaint}")
+    print(f"{len(table) - failures} of {len(table)} command lines behave")
+    return 1 if failures else 0
+
+
+sys.exit(main())
