@@ -87,7 +87,7 @@ class Run {
     return false;
   }
 
-  ReportRow row_of(const Case& one, Judgement judgement) const {
+  [[nodiscard]] ReportRow row_of(const Case& one, Judgement judgement) const {
     const auto& requirement = requirement_of(suite_, one);
     ReportRow row;
     row.verdict = judgement.verdict;

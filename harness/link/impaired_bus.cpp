@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace armjig {
@@ -33,8 +34,9 @@ std::string named(const Impairment& rest) {
 Outcome<std::unique_ptr<ImpairedBus>> ImpairedBus::make(std::unique_ptr<BusPort> inner,
                                                         const Impairment& impairment) {
   const Impairment rest{beyond_a_bus(impairment.out), beyond_a_bus(impairment.in), 1};
-  if (rest == Impairment{})
+  if (rest == Impairment{}) {
     return std::unique_ptr<ImpairedBus>{new ImpairedBus{std::move(inner), impairment}};
+  }
   return problem(ErrorCode::kUnsupported, "impairment '" + named(rest) + "'",
                  "an I2C bus can have bit-errors, loss, delay, bandwidth, stall, disconnect and "
                  "disconnect-after");
@@ -48,18 +50,21 @@ ImpairedBus::ImpairedBus(std::unique_ptr<BusPort> inner, const Impairment& impai
 Result<Ack> ImpairedBus::start(BusAddress address, Access access) {
   const auto byte = static_cast<std::byte>(address.value << 1 | (access == Access::kRead ? 1 : 0));
   is_missed_ = carry(paths_.out, byte) != byte;
-  if (is_missed_) return Ack::kNack;
+  if (is_missed_) return missed();
   is_started_ = true;
   return inner_->start(address, access);
 }
 
 Result<Ack> ImpairedBus::write(std::byte byte) {
-  const auto carried = is_missed_ ? missed() : carry(paths_.out, byte);
-  return carried ? inner_->write(*carried) : Ack::kNack;
+  const auto carried = is_missed_ ? std::nullopt : carry(paths_.out, byte);
+  return carried ? inner_->write(*carried) : missed();
 }
 
 Result<std::byte> ImpairedBus::read(Ack reply) {
-  if (is_missed_ || is_gone()) return missed().value_or(kIdle);
+  if (is_missed_ || is_gone()) {
+    std::ignore = missed();
+    return kIdle;
+  }
   const auto byte = inner_->read(reply);
   return byte ? carry(paths_.in, *byte).value_or(kIdle) : byte;
 }
@@ -76,19 +81,19 @@ bool ImpairedBus::is_gone() const noexcept {
   return is_broken(paths_.out) || is_broken(paths_.in);
 }
 
-/// The byte as it arrives, after the time that it takes; nothing if it does not arrive.
+/// The byte as it arrives, after its delay; nothing if it does not arrive.
 std::optional<std::byte> ImpairedBus::carry(ImpairedPath& path, std::byte byte) {
   if (is_gone()) path.close(now());
   path.push(now(), std::array{byte});
   if (const auto due = path.next_due(now())) wait_until(*due);
   const auto delivery = path.pop(Instant::max());
-  return delivery ? delivery->bytes.front() : missed();
+  return delivery ? std::optional{delivery->bytes.front()} : std::nullopt;
 }
 
 /// A byte that nobody sees takes its time all the same.
-std::optional<std::byte> ImpairedBus::missed() {
+Ack ImpairedBus::missed() {
   wait_until(now() + kByte);
-  return std::nullopt;
+  return Ack::kNack;
 }
 
 }  // namespace armjig

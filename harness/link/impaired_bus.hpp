@@ -40,7 +40,7 @@ class ImpairedBus final : public BusPort {
 
   [[nodiscard]] bool is_gone() const noexcept;
   [[nodiscard]] std::optional<std::byte> carry(ImpairedPath& path, std::byte byte);
-  [[nodiscard]] std::optional<std::byte> missed();
+  [[nodiscard]] Ack missed();
 
   std::unique_ptr<BusPort> inner_;
   ImpairedPaths paths_;

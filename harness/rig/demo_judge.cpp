@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/rig/demo_judge.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "harness/wire/demo/demo.hpp"
 
 namespace armjig::demo {
 namespace {
 
+/// A request that has begun is damaged by these and dropped.
+constexpr std::array<std::byte, kMessageSize - 1> kFlush{};
+
 class DemoJudge final : public Judge {
  public:
+  DemoJudge() {
+    std::ranges::copy(kFlush, stop_.begin());
+    std::ranges::copy(encode(Operation::kHalt), stop_.begin() + kFlush.size());
+  }
+
+  [[nodiscard]] Bytes opening_bytes() const override { return kFlush; }
+
   std::optional<Refusal> judge(Bytes bytes, const Permissions& permissions) override {
     auto splitter = splitter_;
     auto is_running = is_running_;
@@ -26,17 +39,16 @@ class DemoJudge final : public Judge {
     is_running_ = is_running;
     return std::nullopt;
   }
+
   void observe(Bytes /*bytes*/) override {}
   std::optional<std::string> must_stop() override { return std::nullopt; }
   [[nodiscard]] bool may_be_moving() const override { return is_running_; }
-  [[nodiscard]] std::vector<std::byte> stop_bytes() const override {
-    const auto halt = encode(Operation::kHalt);
-    return {halt.begin(), halt.end()};
-  }
+  [[nodiscard]] Bytes stop_bytes() const override { return stop_; }
 
  private:
   Splitter splitter_{kRequestStart};
   bool is_running_ = false;
+  std::array<std::byte, kFlush.size() + kMessageSize> stop_{};
 };
 
 }  // namespace

@@ -32,8 +32,12 @@ inline constexpr std::size_t kHazardCount = 5;
 class Permissions {
  public:
   constexpr void add(Hazard hazard) noexcept { bits_ |= bit(hazard); }
+  constexpr void withdraw_motion() noexcept { bits_ &= ~(bit(Hazard::kMove) | bit(Hazard::kHome)); }
   [[nodiscard]] constexpr bool allow(Hazard hazard) const noexcept {
     return (bits_ & bit(hazard)) != 0;
+  }
+  [[nodiscard]] constexpr bool allow_motion() const noexcept {
+    return allow(Hazard::kMove) || allow(Hazard::kHome);
   }
   [[nodiscard]] static constexpr Permissions all() noexcept {
     Permissions permissions;
@@ -67,6 +71,11 @@ class Judge {
   Judge& operator=(const Judge&) = delete;
   virtual ~Judge() = default;
 
+  /// Bytes that leave every receiver, the device's and the judge's, in one and the same state,
+  /// whatever was half sent before; they are no command. Written, and judged, before anything else
+  /// and after a write that failed.
+  [[nodiscard]] virtual Bytes opening_bytes() const = 0;
+
   /// Judges bytes that are about to be written. None: they may be, and the judge takes it that they
   /// are. With a refusal nothing of them must be written.
   [[nodiscard]] virtual std::optional<Refusal> judge(Bytes bytes,
@@ -76,14 +85,16 @@ class Judge {
   virtual void observe(Bytes bytes) = 0;
 
   /// Whether the device must be stopped now because of what was observed, and why: a joint at its
-  /// bound, the emergency stop. Answers once.
+  /// bound, the emergency stop. Answers once for each reason.
   [[nodiscard]] virtual std::optional<std::string> must_stop() = 0;
 
-  /// Whether the device may be moving because of what was written.
+  /// Whether the device may be moving because of what was written. Stays true until the device
+  /// shows that it heard the end of it.
   [[nodiscard]] virtual bool may_be_moving() const = 0;
 
-  /// What stops it. Sent again and again until it stands.
-  [[nodiscard]] virtual std::vector<std::byte> stop_bytes() const = 0;
+  /// What stops it, whatever was half sent before. Harmless, whatever the permissions. Valid until
+  /// the next `judge`.
+  [[nodiscard]] virtual Bytes stop_bytes() const = 0;
 };
 
 /// A device that this room knows.
@@ -96,33 +107,50 @@ struct JudgeEntry {
 [[nodiscard]] std::span<const JudgeEntry> judges() noexcept;
 
 /// Stands before every write to a device that is not emulated, whoever writes. A write that is
-/// refused fails with `kForbidden`, and `last_refusal` says why. When the arm stops being safe it
-/// sends the stop by itself; so does its destructor if the device may be moving.
+/// refused fails with `kForbidden`, and `last_refusal` says why. When the arm stops being safe, or
+/// a write is refused while it may be moving, the guard stops it by itself; so does its destructor
+/// if the device may be moving.
+///
+/// It watches the device at every call, also if nobody reads: `write` takes in what has arrived and
+/// keeps it for `read`.
 class GuardedStream final : public StreamPort {
  public:
   /// With permission to move or home, a port that has a descriptor gets a supervisor; call it while
-  /// the program has one thread then. Errors: those of `Supervisor::start`.
+  /// the program has one thread then. Errors: those of `Supervisor::start` and of the port.
   [[nodiscard]] static Result<std::unique_ptr<GuardedStream>> guard(
       std::unique_ptr<StreamPort> port, std::unique_ptr<Judge> judge, Permissions permissions);
   ~GuardedStream() override;
 
+  /// While the arm may be moving, at least two writes a second are due, or the supervisor stops it.
   Result<void> write(Bytes bytes) override;
   Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override;
   [[nodiscard]] Instant now() const override { return port_->now(); }
   [[nodiscard]] std::optional<int> descriptor() const override { return port_->descriptor(); }
 
+  /// Why it last refused a write or stopped the arm; none if it never did.
   [[nodiscard]] const std::optional<Refusal>& last_refusal() const noexcept { return refusal_; }
 
  private:
   GuardedStream(std::unique_ptr<StreamPort> port, std::unique_ptr<Judge> judge,
                 Permissions permissions, std::optional<Supervisor> supervisor);
+  [[nodiscard]] Result<void> take_in(Instant deadline);
+  [[nodiscard]] Result<void> receive(Instant deadline);
+  [[nodiscard]] Result<void> put(Bytes bytes);
+  [[nodiscard]] Result<void> fall_into_step();
+  void report_life();
+  void report_motion();
   void stop();
 
   std::unique_ptr<StreamPort> port_;
   std::unique_ptr<Judge> judge_;
   Permissions permissions_;
   std::optional<Supervisor> supervisor_;
+  std::vector<std::byte> told_stop_;  ///< what the supervisor would send
+  Supervisor::Motion told_motion_ = Supervisor::Motion::kNone;
   std::optional<Refusal> refusal_;
+  std::vector<std::byte> unread_;  ///< arrived, and nobody asked for it yet
+  bool is_in_step_ = false;        ///< the judge knows what the device's receiver holds
+  bool is_unsupervised_ = false;   ///< the supervisor is gone
 };
 
 }  // namespace armjig

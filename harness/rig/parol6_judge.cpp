@@ -3,9 +3,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "harness/wire/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/splitter.hpp"
@@ -15,9 +17,38 @@ namespace {
 
 constexpr std::uint8_t kAllHomed = 0xFC;
 constexpr std::uint8_t kOutputs = io_flag::kOut1 | io_flag::kOut2;
+/// So many frames without any answer, half a second at 100 Hz, and the arm counts as out of sight.
+constexpr int kOutOfSight = 50;
 
-bool is_outside(const JointBounds& bounds, Steps position) noexcept {
-  return position < bounds.lower || position > bounds.upper;
+/// Ends whatever frame a receiver is in and begins none. At worst (parol6.receive.length-zero) a
+/// length of 0 takes 256 of these bytes, the last of them as a length, hence 85 more.
+constexpr std::size_t kFlushSize = 512;
+constexpr std::byte kFlush{0x55};
+/// A whole store of zeros that is not accepted, since it does not end well: the shipped board keeps
+/// there what earlier frames left, and shorter ones uncover it.
+constexpr std::size_t kStoreSize = 255;
+
+constexpr auto kOpening = [] {
+  std::array<std::byte, kFlushSize + kHeaderSize + kStoreSize> bytes{};
+  std::fill_n(bytes.begin(), kFlushSize, kFlush);
+  std::fill_n(bytes.begin() + kFlushSize, kStartSize, kStartByte);
+  bytes[kFlushSize + kStartSize] = std::byte{kStoreSize};
+  return bytes;
+}();
+
+bool moves(Command command) noexcept {
+  return command == Command::kJog || command == Command::kGoTo || command == Command::kHome ||
+         command == Command::kDemo;
+}
+
+/// Idle does not.
+bool ends_homing(Command command) noexcept {
+  return command == Command::kEnable || command == Command::kDisable ||
+         command == Command::kClearError || command == Command::kJog || command == Command::kGoTo;
+}
+
+bool is_outside(const JointBounds& bounds, std::int32_t position) noexcept {
+  return position < bounds.lower.value || position > bounds.upper.value;
 }
 
 /// Whether `speed` drives a joint that stands at or beyond a bound further out.
@@ -26,27 +57,134 @@ bool leads_out(const JointBounds& bounds, Steps position, StepsPerSecond speed) 
          (position <= bounds.lower && speed.value < 0);
 }
 
+/// Where a go-to comes to rest: off its target, where the distance outweighs the commanded speed
+/// (parol6.goto.law).
+std::int32_t resting_place(Steps goal, StepsPerSecond feed) noexcept {
+  return goal.value + feed.value / 100;
+}
+
+/// Whether a gripper set-point does anything that the one in the frame before did not
+/// (parol6.gripper.one-frame).
+bool is_gripper_action(GripperSetPoint set_point, const GripperSetPoint& before) noexcept {
+  if (set_point.mode != 0) return true;
+  set_point.mode = before.mode;
+  return set_point != before;
+}
+
+bool is_homed(const TelemetryFrame& telemetry) noexcept {
+  return (telemetry.homed & kAllHomed) == kAllHomed;
+}
+
+bool is_estop_pressed(const TelemetryFrame& telemetry) noexcept {
+  return (telemetry.io & io_flag::kEstopReleased) == 0;
+}
+
+/// What a board does, as far as our writes and its answers tell.
+class Belief {
+ public:
+  [[nodiscard]] const CommandFrame& latched() const noexcept { return latched_; }
+
+  void accept(const CommandFrame& frame) noexcept {
+    if (frame.command == Command::kHome) {
+      if (latched_.command != Command::kHome) was_unhomed_ = false;
+      may_be_homing_ = true;
+    }
+    if (moves(frame.command)) is_unheard_ = true;
+    latched_ = frame;
+  }
+
+  /// What ends motion counts only when the board says that it has it: it may be lost, and of
+  /// several frames that arrive at once only the last one acts.
+  void observe(const TelemetryFrame& telemetry) noexcept {
+    const bool is_echo = telemetry.echo == latched_.command;
+    was_unhomed_ = was_unhomed_ || !is_homed(telemetry);
+    const bool has_homed =
+        is_homed(telemetry) && was_unhomed_ && latched_.command != Command::kHome;
+    if (has_homed || (is_echo && ends_homing(latched_.command))) may_be_homing_ = false;
+    if (is_echo && !moves(latched_.command)) is_unheard_ = false;
+    if (!is_echo && moves(telemetry.echo)) is_unheard_ = true;
+  }
+
+  [[nodiscard]] bool may_be_moving() const noexcept {
+    return moves(latched_.command) || may_be_homing_ || is_unheard_;
+  }
+
+ private:
+  CommandFrame latched_{};
+  bool may_be_homing_ = false;
+  bool was_unhomed_ = false;  ///< since it was told to home
+  bool is_unheard_ = false;   ///< whether the end of a motion was heard
+};
+
+using Verdict = std::optional<Refusal>;
+
+/// Calls `accept` for each frame that the shipped board finds, until it refuses one.
+template <class Accept>
+Verdict for_each_frame(FirmwareReceiver& receiver, Bytes bytes, Accept accept) {
+  while (!bytes.empty()) {
+    const auto step = receiver.step(bytes);
+    bytes = bytes.subspan(step.used);
+    if (!step.accepted) continue;
+    if (auto refusal = accept(decode_command(receiver.body()))) return refusal;
+  }
+  return std::nullopt;
+}
+
+/// The same for whatever looks like a frame at any place. That is more than any strict receiver
+/// finds, however it finds its way back behind damage and whichever check byte it wants.
+template <class Accept>
+Verdict for_each_window(Bytes bytes, Accept accept) {
+  for (; bytes.size() >= kCommandFrameSize; bytes = bytes.subspan(1)) {
+    const auto window = bytes.first<kCommandFrameSize>();
+    const bool is_frame =
+        std::ranges::count(window.first<kStartSize>(), kStartByte) == kStartSize &&
+        window[kStartSize] == std::byte{kCommandPayloadSize} &&
+        std::ranges::equal(window.last<kEndBytes.size()>(), kEndBytes);
+    if (!is_frame) continue;
+    if (auto refusal = accept(decode_command(body_of(window)))) return refusal;
+  }
+  return std::nullopt;
+}
+
 class BoardJudge final : public Judge {
  public:
+  BoardJudge() {
+    recent_.reserve(4096);
+    std::fill_n(stop_.begin(), kFlushSize, kFlush);
+    renew_stop();
+  }
+
+  [[nodiscard]] Bytes opening_bytes() const override { return kOpening; }
+
   std::optional<Refusal> judge(Bytes bytes, const Permissions& permissions) override {
     auto receiver = receiver_;
-    auto latched = latched_;
-    while (!bytes.empty()) {
-      const auto step = receiver.step(bytes);
-      bytes = bytes.subspan(step.used);
-      if (!step.accepted) continue;
-      const auto frame = decode_command(receiver.body());
-      if (auto refusal = judge_frame(frame, latched, permissions)) return refusal;
-      latched = frame;
+    auto shipped = shipped_;
+    auto strict = strict_;
+    auto asked = unanswered_;
+    const auto known = recent_.size();
+    recent_.insert(recent_.end(), bytes.begin(), bytes.end());
+    const auto judge_and_accept = [&](Belief& board) {
+      return [&](const CommandFrame& frame) -> Verdict {
+        if (auto refusal = judge_frame(frame, board.latched(), permissions)) return refusal;
+        board.accept(frame);
+        return std::nullopt;
+      };
+    };
+    auto refusal = for_each_frame(receiver, bytes, [&](const CommandFrame& frame) {
+      ++asked;
+      return judge_and_accept(shipped)(frame);
+    });
+    if (!refusal) refusal = for_each_window(recent_, judge_and_accept(strict));
+    if (refusal) {
+      recent_.resize(known);
+      return refusal;
     }
     receiver_ = receiver;
-    latched_ = latched;
-    if (latched_.command == Command::kHome) may_be_homing_ = true;
-    const bool ends_homing =
-        latched_.command == Command::kEnable || latched_.command == Command::kDisable ||
-        latched_.command == Command::kClearError || latched_.command == Command::kJog ||
-        latched_.command == Command::kGoTo;
-    if (ends_homing) may_be_homing_ = false;
+    shipped_ = shipped;
+    strict_ = strict;
+    unanswered_ = asked;
+    forget_all_but(kCommandFrameSize - 1);
+    renew_stop();
     return std::nullopt;
   }
 
@@ -57,54 +195,52 @@ class BoardJudge final : public Judge {
       const auto* frame = std::get_if<Splitter::Frame>(&step.found);
       if (frame == nullptr) continue;
       telemetry_ = decode_telemetry(body_of(frame->bytes.first<kTelemetryFrameSize>()));
-      if (is_homed()) may_be_homing_ = may_be_homing_ && latched_.command == Command::kHome;
+      unanswered_ = 0;
+      if (may_be_moving() && !stop_reason_) stop_reason_ = reason_to_stop();
+      shipped_.observe(*telemetry_);
+      strict_.observe(*telemetry_);
     }
-    if (may_be_moving() && !stop_reason_) stop_reason_ = reason_to_stop();
   }
 
   std::optional<std::string> must_stop() override {
     auto reason = std::exchange(stop_reason_, std::nullopt);
-    if (reason) {
-      latched_.command = Command::kDisable;
-      may_be_homing_ = false;
-    }
-    return reason;
+    return may_be_moving() ? reason : std::nullopt;
   }
 
   [[nodiscard]] bool may_be_moving() const override {
-    return latched_.command == Command::kJog || latched_.command == Command::kGoTo ||
-           may_be_homing_;
+    return shipped_.may_be_moving() || strict_.may_be_moving();
   }
 
-  [[nodiscard]] std::vector<std::byte> stop_bytes() const override {
-    auto frame = latched_;
+  [[nodiscard]] Bytes stop_bytes() const override { return stop_; }
+
+ private:
+  /// Outputs and gripper stay as they are: a load must not fall because the arm stops.
+  void renew_stop() noexcept {
+    auto frame = shipped_.latched();
     frame.command = Command::kDisable;
     frame.speed = {};
     frame.check = kCheckHost;
     frame.gripper.mode = 0;
-    const auto bytes = encode(frame);
-    return {bytes.begin(), bytes.end()};
+    std::ranges::copy(encode(frame), stop_.begin() + kFlushSize);
   }
 
- private:
-  [[nodiscard]] bool is_homed() const noexcept {
-    return telemetry_ && (telemetry_->homed & kAllHomed) == kAllHomed;
-  }
-  [[nodiscard]] bool is_estop_pressed() const noexcept {
-    return telemetry_ && (telemetry_->io & io_flag::kEstopReleased) == 0;
+  void forget_all_but(std::size_t size) {
+    const auto surplus = recent_.size() - std::min(recent_.size(), size);
+    recent_.erase(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(surplus));
   }
 
-  [[nodiscard]] std::optional<Refusal> judge_frame(const CommandFrame& frame,
-                                                   const CommandFrame& before,
-                                                   const Permissions& permissions) const {
-    const auto needs = [&](Hazard hazard, std::string_view what) -> std::optional<Refusal> {
+  [[nodiscard]] bool is_arm_homed() const noexcept { return telemetry_ && is_homed(*telemetry_); }
+
+  [[nodiscard]] Verdict judge_frame(const CommandFrame& frame, const CommandFrame& before,
+                                    const Permissions& permissions) const {
+    const auto needs = [&](Hazard hazard, std::string_view what) -> Verdict {
       if (permissions.allow(hazard)) return std::nullopt;
       return Refusal{hazard, fmt::format("{} needs --allow {}", what, to_string(hazard))};
     };
     if (((frame.in_out ^ before.in_out) & kOutputs) != 0) {
       if (auto refusal = needs(Hazard::kState, "switching an output")) return refusal;
     }
-    if (frame.gripper != before.gripper) {
+    if (is_gripper_action(frame.gripper, before.gripper)) {
       if (auto refusal = needs(Hazard::kGrip, "a gripper set-point")) return refusal;
     }
     switch (frame.command) {
@@ -114,14 +250,14 @@ class BoardJudge final : public Judge {
         return needs(Hazard::kState, "clear error");
       case Command::kHome:
         if (auto refusal = needs(Hazard::kHome, "home")) return refusal;
-        return refuse_while_stopped(Hazard::kHome);
+        return refuse_when_unsafe(Hazard::kHome);
       case Command::kJog:
         if (auto refusal = needs(Hazard::kMove, "jog")) return refusal;
-        if (auto refusal = refuse_while_stopped(Hazard::kMove)) return refusal;
+        if (auto refusal = refuse_when_unsafe(Hazard::kMove)) return refusal;
         return judge_jog(frame);
       case Command::kGoTo:
         if (auto refusal = needs(Hazard::kMove, "go-to")) return refusal;
-        if (auto refusal = refuse_while_stopped(Hazard::kMove)) return refusal;
+        if (auto refusal = refuse_when_unsafe(Hazard::kMove)) return refusal;
         return judge_go_to(frame);
       case Command::kDemo:
         return Refusal{Hazard::kMove, "code 69 moves all joints and cannot be disabled"};
@@ -132,30 +268,39 @@ class BoardJudge final : public Judge {
     return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<Refusal> refuse_while_stopped(Hazard hazard) const {
-    if (!is_estop_pressed()) return std::nullopt;
-    return Refusal{hazard, "the emergency stop is pressed"};
+  [[nodiscard]] Verdict refuse_when_unsafe(Hazard hazard) const {
+    if (telemetry_ && is_estop_pressed(*telemetry_)) {
+      return Refusal{hazard, "the emergency stop is pressed"};
+    }
+    if (unanswered_ >= kOutOfSight) {
+      return Refusal{hazard,
+                     fmt::format("the board has not answered {} frames, so nobody could see its "
+                                 "emergency stop",
+                                 unanswered_)};
+    }
+    return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<Refusal> judge_jog(const CommandFrame& frame) const {
+  [[nodiscard]] Verdict judge_jog(const CommandFrame& frame) const {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto speed = frame.speed[j];
       if (std::abs(speed.value) > kJointBounds[j].max_jog.value) {
         return Refusal{Hazard::kMove, fmt::format("j{} may jog at most at {} steps/s", j + 1,
                                                   kJointBounds[j].max_jog.value)};
       }
-      if (is_homed() && leads_out(kJointBounds[j], telemetry_->position[j], speed)) {
+      if (is_arm_homed() && leads_out(kJointBounds[j], telemetry_->position[j], speed)) {
         return Refusal{Hazard::kMove, fmt::format("j{} is at its bound", j + 1)};
       }
     }
     return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<Refusal> judge_go_to(const CommandFrame& frame) const {
-    if (!is_homed()) return Refusal{Hazard::kMove, "go-to needs a homed arm"};
+  [[nodiscard]] Verdict judge_go_to(const CommandFrame& frame) const {
+    if (!is_arm_homed()) return Refusal{Hazard::kMove, "go-to needs a homed arm"};
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& bounds = kJointBounds[j];
-      if (is_outside(bounds, frame.position[j])) {
+      if (is_outside(bounds, frame.position[j].value) ||
+          is_outside(bounds, resting_place(frame.position[j], frame.speed[j]))) {
         return Refusal{Hazard::kMove, fmt::format("j{} may go from {} to {} steps", j + 1,
                                                   bounds.lower.value, bounds.upper.value)};
       }
@@ -174,22 +319,27 @@ class BoardJudge final : public Judge {
   }
 
   [[nodiscard]] std::optional<std::string> reason_to_stop() const {
-    if (is_estop_pressed()) return "the emergency stop was pressed";
-    if (!is_homed() || latched_.command != Command::kJog) return std::nullopt;
-    for (std::size_t j = 0; j < kJointCount; ++j) {
-      if (leads_out(kJointBounds[j], telemetry_->position[j], latched_.speed[j])) {
-        return fmt::format("j{} reached its bound", j + 1);
+    if (is_estop_pressed(*telemetry_)) return "the emergency stop was pressed";
+    for (const auto* board : {&shipped_, &strict_}) {
+      if (!is_arm_homed() || board->latched().command != Command::kJog) continue;
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        if (leads_out(kJointBounds[j], telemetry_->position[j], board->latched().speed[j])) {
+          return fmt::format("j{} reached its bound", j + 1);
+        }
       }
     }
     return std::nullopt;
   }
 
-  FirmwareReceiver receiver_;  ///< what the board would make of the bytes
-  CommandFrame latched_{};
+  FirmwareReceiver receiver_;      ///< what the shipped board would make of the bytes
+  Belief shipped_;                 ///< and do
+  std::vector<std::byte> recent_;  ///< that may still become part of a window
+  Belief strict_;                  ///< what a board would do that finds every window
+  int unanswered_ = 0;             ///< frames since the last telemetry
   Splitter splitter_{kTelemetryPayloadSize};
   std::optional<TelemetryFrame> telemetry_;
   std::optional<std::string> stop_reason_;
-  bool may_be_homing_ = false;
+  std::array<std::byte, kFlushSize + kCommandFrameSize> stop_{};
 };
 
 }  // namespace

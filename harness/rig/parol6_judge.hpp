@@ -28,9 +28,14 @@ inline constexpr std::array<JointBounds, kJointCount> kJointBounds{{
     {Steps{0}, Steps{64000}, StepsPerSecond{22000}, StepsPerSecond{18000}},
 }};
 
-/// Judges by what the shipped board would accept. Bounds of position need a homed arm: without it
-/// go-to is refused, and jog is bounded in speed only. While the emergency stop is pressed nothing
-/// may move. The built-in demonstration ignores the board's own disable and is always refused.
+/// Judges by what the shipped board would accept, and by whatever looks like a frame to a board
+/// that keeps to the document. Bounds of position need a homed arm: without it go-to is refused,
+/// and jog is bounded in speed only. While the emergency stop is pressed, or the board has been
+/// silent for half a second of frames, nothing may move. The built-in demonstration ignores the
+/// board's own disable and is always refused.
+///
+/// Not covered: a board whose homing another program began and then paused goes on homing at our
+/// first idle frame, and the first frame of all sets outputs and gripper, as every frame does.
 [[nodiscard]] std::unique_ptr<Judge> make_judge();
 
 }  // namespace armjig::parol6

@@ -8,6 +8,16 @@
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
+namespace {
+
+auto problem_of_guard(const Target& target, const Error& error) {
+  const auto* const hint = error.code == ErrorCode::kSystem
+                               ? "the process that watches over the arm cannot be started"
+                               : "it does not take what it is sent";
+  return problem(error.code, target.text, hint);
+}
+
+}  // namespace
 
 Outcome<Rig> Rig::open(std::string_view device, const RigOptions& options,
                        OpenEmulated open_emulated) {
@@ -15,13 +25,16 @@ Outcome<Rig> Rig::open(std::string_view device, const RigOptions& options,
   if (!port) return tl::unexpected{port.error()};
   Rig rig;
   rig.port_ = *std::move(port);
+  if (!options.wire_log.empty()) {
+    const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
+    auto logged = LoggedStream::log(std::move(rig.port_), options.wire_log, *entry);
+    if (!logged) return tl::unexpected{logged.error()};
+    rig.port_ = *std::move(logged);
+  }
   if (!options.target.is_emulated()) {
     const auto judge = std::ranges::find(judges(), device, &JudgeEntry::device);
     auto guarded = GuardedStream::guard(std::move(rig.port_), judge->make(), options.permissions);
-    if (!guarded) {
-      return problem(guarded.error().code, options.target.text,
-                     "the supervisor process cannot be started");
-    }
+    if (!guarded) return problem_of_guard(options.target, guarded.error());
     rig.guard_ = guarded->get();
     rig.port_ = *std::move(guarded);
   }
@@ -29,12 +42,6 @@ Outcome<Rig> Rig::open(std::string_view device, const RigOptions& options,
     auto impaired = std::make_unique<ImpairedStream>(std::move(rig.port_), *options.impairment);
     rig.impaired_ = impaired.get();
     rig.port_ = std::move(impaired);
-  }
-  if (!options.wire_log.empty()) {
-    const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
-    auto logged = LoggedStream::log(std::move(rig.port_), options.wire_log, *entry);
-    if (!logged) return tl::unexpected{logged.error()};
-    rig.port_ = *std::move(logged);
   }
   return rig;
 }

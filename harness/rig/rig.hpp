@@ -20,11 +20,13 @@ struct RigOptions {
   Target target;
   Permissions permissions;               ///< what may be written to it, if it is not emulated
   std::optional<Impairment> impairment;  ///< a bad link on purpose
-  std::string wire_log;                  ///< a file for every byte that passes; empty: none
+  std::string wire_log;                  ///< a file for every byte on the wire; empty: none
 };
 
-/// A device on the jig. From the device outwards: its port, the guard unless it is emulated, the
-/// impairments, the wire log. This is the one way by which programs get at a target.
+/// A device on the jig. From the device outwards: its port, the wire log, the guard unless it is
+/// emulated, the impairments. So the log has what the device really got, the guard's own stops
+/// among it, and a flipped bit does not slip past the guard. This is the one way by which programs
+/// get at a target.
 class Rig {
  public:
   /// `device` must be one that this room knows. With permission to move, call it while the program
@@ -34,7 +36,7 @@ class Rig {
 
   [[nodiscard]] StreamPort& port() noexcept { return *port_; }
 
-  /// Why the guard refused the last write, if it did, or stopped the arm.
+  /// Why the guard last refused a write or stopped the arm; none if it never did.
   [[nodiscard]] std::optional<Refusal> last_refusal() const;
 
   /// What the impairments did; none if there are none.

@@ -3,98 +3,175 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <utility>
 
 namespace armjig {
 namespace {
 
-/// What goes through the pipe.
-enum Message : char { kStands = 's', kMayMove = 'm', kFarewell = 'f' };
-
 constexpr int kSilenceMs = 500;
-/// The stop leaves every 10 ms for a second: a device in the middle of a broken message may swallow
-/// some, and one that restarts needs 0.74 s before it hears anything.
+/// The stop leaves every 10 ms for a second: a device that restarts needs 0.74 s before it hears
+/// anything.
 constexpr int kStops = 100;
 constexpr int kStopIntervalMs = 10;
+/// Not the name of the program: `killall` must not find it.
+constexpr auto kName = "arm-supervisor";
 
-/// False if nobody listens any more. A full pipe is no harm: what is in it says the same.
-bool say(const Descriptor& pipe, Message message) noexcept {
-  const char byte = message;
-  const auto size = ::send(pipe.value(), &byte, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
-  return size == 1 || errno == EAGAIN;
+/// Its first word, when nothing can disturb it any more.
+constexpr char kReady = 'r';
+/// What it hears is a `Motion`, or the new stop behind this byte.
+constexpr char kNewStop = 'n';
+using MessageBytes = std::array<char, 1 + Supervisor::kMostStopBytes>;
+
+/// What the supervisor knows; no heap behind it.
+struct Stop {
+  std::array<std::byte, Supervisor::kMostStopBytes> bytes{};
+  std::size_t size = 0;
+
+  void set(Bytes stop) noexcept {
+    size = std::min(stop.size(), bytes.size());
+    std::copy_n(stop.begin(), size, bytes.begin());
+  }
+};
+
+bool say(const Descriptor& socket, const char* message, std::size_t size) noexcept {
+  return ::send(socket.value(), message, size, MSG_NOSIGNAL | MSG_DONTWAIT) ==
+         static_cast<ssize_t>(size);
 }
 
-/// Only what is safe in a process that was forked: system calls.
-[[noreturn]] void send_stops(int port, const std::vector<std::byte>& stop) {
+// From here to `supervise`: only what is safe in a process that was forked, which is system calls.
+
+/// Files of the parent, the sockets of other supervisors among them, must not live on in this one.
+void close_all_but(int one, int other) noexcept {
+  const auto low = static_cast<unsigned>(std::min(one, other));
+  const auto high = static_cast<unsigned>(std::max(one, other));
+  const auto close_from_to = [](unsigned first, unsigned last) {
+    if (first > last) return;
+    if (::close_range(first, last, 0) == 0) return;
+    constexpr unsigned kMostDescriptors = 4096;  // the kernel is older than 5.9
+    for (auto fd = first; fd <= std::min(last, kMostDescriptors); ++fd)
+      ::close(static_cast<int>(fd));
+  };
+  if (low > 0) close_from_to(0, low - 1);
+  close_from_to(low + 1, high - 1);
+  close_from_to(high + 1, UINT_MAX);
+}
+
+void step_aside() noexcept {
+  sigset_t all;
+  ::sigfillset(&all);
+  ::sigprocmask(SIG_BLOCK, &all, nullptr);
+  ::setsid();
+  ::prctl(PR_SET_NAME, kName);
+}
+
+[[noreturn]] void send_stops(int port, const Stop& stop) noexcept {
   std::array<std::byte, 4096> ignored;
   for (int i = 0; i < kStops; ++i) {
     // Errors and short writes are met by trying again; nothing else could be done here.
-    (void)!::write(port, stop.data(), stop.size());
+    (void)!::write(port, stop.bytes.data(), stop.size);
     ::poll(nullptr, 0, kStopIntervalMs);
     (void)!::read(port, ignored.data(), ignored.size());  // else the board's answers pile up
   }
   ::_exit(0);
 }
 
-[[noreturn]] void supervise(int pipe, int port, const std::vector<std::byte>& stop) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) ::signal(signal, SIG_IGN);
-  bool may_be_moving = false;
+[[noreturn]] void supervise(int socket, int port, Stop stop) noexcept {
+  step_aside();
+  close_all_but(socket, port);
+  (void)!::send(socket, &kReady, 1, MSG_NOSIGNAL);
+  auto motion = Supervisor::Motion::kNone;
+  const auto end = [&]() {
+    ::close(socket);  // first, so that who wakes up meanwhile learns at once that we are gone
+    if (motion == Supervisor::Motion::kPossible) send_stops(port, stop);
+    ::_exit(0);
+  };
   for (;;) {
-    pollfd ready{.fd = pipe, .events = POLLIN, .revents = 0};
-    const int count = ::poll(&ready, 1, may_be_moving ? kSilenceMs : -1);
-    if (count < 0 && errno == EINTR) continue;
-    if (count == 0) send_stops(port, stop);
-    std::array<char, 256> messages;
-    const auto size = ::read(pipe, messages.data(), messages.size());
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) {
-      if (may_be_moving) send_stops(port, stop);
-      ::_exit(0);
+    pollfd ready{.fd = socket, .events = POLLIN, .revents = 0};
+    const bool is_moving = motion == Supervisor::Motion::kPossible;
+    if (::poll(&ready, 1, is_moving ? kSilenceMs : -1) == 0) end();
+    MessageBytes message;
+    const auto size = ::recv(socket, message.data(), message.size(), 0);
+    if (size <= 0) end();
+    const auto content = std::as_bytes(std::span{message}).first(static_cast<std::size_t>(size));
+    if (message[0] == kNewStop) {
+      stop.set(content.subspan(1));
+    } else {
+      motion = static_cast<Supervisor::Motion>(message[0]);
     }
-    const char last = messages[static_cast<std::size_t>(size - 1)];
-    if (last == kFarewell) ::_exit(0);
-    may_be_moving = last == kMayMove;
   }
 }
 
 }  // namespace
 
-Result<Supervisor> Supervisor::start(int port, std::vector<std::byte> stop) {
+Result<Supervisor> Supervisor::start(int port, Bytes stop) {
+  assert(stop.size() <= kMostStopBytes);
   std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return fail(ErrorCode::kSystem, errno);
   }
-  Descriptor reading{ends[0]};
-  Descriptor writing{ends[1]};
+  Descriptor theirs{ends[0]};
+  Descriptor ours{ends[1]};
+  Stop first_stop;
+  first_stop.set(stop);
   const int process = ::fork();
   if (process < 0) return fail(ErrorCode::kSystem, errno);
-  if (process == 0) {
-    ::close(writing.value());  // else the pipe would never end
-    supervise(reading.value(), port, stop);
-  }
-  return Supervisor{std::move(writing), process};
+  if (process == 0) supervise(theirs.value(), port, first_stop);
+  theirs.close();  // so that its death ends the waiting
+  Supervisor supervisor{std::move(ours), process};
+  if (!supervisor.is_ready()) return fail(ErrorCode::kSystem, ECHILD);
+  return supervisor;
 }
 
-Supervisor::Supervisor(Descriptor pipe, int process) noexcept
-    : pipe_{std::move(pipe)}, process_{process} {}
+Supervisor::Supervisor(Descriptor socket, int process) noexcept
+    : socket_{std::move(socket)}, process_{process} {}
+
+Supervisor::Supervisor(Supervisor&& other) noexcept
+    : socket_{std::move(other.socket_)}, process_{std::exchange(other.process_, -1)} {}
+
+Supervisor& Supervisor::operator=(Supervisor&& other) noexcept {
+  std::swap(socket_, other.socket_);
+  std::swap(process_, other.process_);
+  return *this;
+}
 
 Supervisor::~Supervisor() {
-  if (!pipe_.is_open()) return;
-  (void)say(pipe_, kFarewell);
-  pipe_.close();
-  while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  socket_.close();
+  while (process_ > 0 && ::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
 }
 
-bool Supervisor::tell(bool may_be_moving) noexcept {
-  return say(pipe_, may_be_moving ? kMayMove : kStands);
+bool Supervisor::is_ready() const noexcept {
+  char word{};
+  ssize_t size = 0;
+  do {
+    size = ::recv(socket_.value(), &word, 1, 0);
+  } while (size < 0 && errno == EINTR);
+  return size == 1 && word == kReady;
+}
+
+bool Supervisor::tell(Motion motion) noexcept {
+  const auto message = static_cast<char>(motion);
+  return say(socket_, &message, 1);
+}
+
+bool Supervisor::tell_stop(Bytes stop) noexcept {
+  assert(stop.size() <= kMostStopBytes);
+  MessageBytes message;
+  message[0] = kNewStop;
+  const auto* const first = reinterpret_cast<const char*>(stop.data());
+  std::copy_n(first, stop.size(), message.data() + 1);
+  return say(socket_, message.data(), 1 + stop.size());
 }
 
 }  // namespace armjig

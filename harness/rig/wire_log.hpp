@@ -14,7 +14,8 @@ namespace armjig {
 /// Writes down every byte that passes, with its time and what it means, as a `golden-trace/1` file:
 /// a line for each piece as it was written or read, with a key `messages` for those that ended in
 /// it. `armjig decode` reads it back. Lines are flushed as they are made, so that nothing is
-/// missing after a crash.
+/// missing after a crash. Not in it: what a write that failed may have sent in part, and the stops
+/// of the supervisor, which come when we are gone.
 class LoggedStream final : public StreamPort {
  public:
   /// Problems: the file cannot be written.

@@ -97,6 +97,7 @@ TEST(ImpairedBus, ReadsALostByteAsAnIdleLine) {
   EXPECT_EQ(bus.port->start(kDemo, Access::kRead), Ack::kAck);
   EXPECT_EQ(bus.port->read(Ack::kAck), std::byte{0xFF});
   EXPECT_EQ(bus.device->reads, 1) << "the device did send it";
+  EXPECT_EQ(bus.port->now(), at(190us));
 }
 
 TEST(ImpairedBus, FlipsBitsOfDataBothWays) {

@@ -77,7 +77,7 @@ Plot late_sends() {
   for (int i = 0; i < 40; ++i) {
     dots.points.push_back({std::fmod(i * 17.3, 60), 0.2 + 0.15 * (i * 7 % 13)});
   }
-  Series limit{.name = "limit", .points = {{0, 2}, {60, 2}}};
+  const Series limit{.name = "limit", .points = {{0, 2}, {60, 2}}};
   plot.series = {dots, limit};
   return plot;
 }

@@ -12,10 +12,8 @@
 namespace armjig::parol6 {
 namespace {
 
-using test::as_vector;
 using test::ByteVector;
 using test::hex;
-using testing::ElementsAre;
 using namespace std::chrono_literals;
 
 CanFrame frame(GripperCan command, const ByteVector& data = {}, std::uint8_t node = 0) {

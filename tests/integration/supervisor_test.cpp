@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/rig/supervisor.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "emulators/host/host.hpp"
+#include "emulators/parol6/arm.hpp"
+#include "harness/drive/parol6/drive_loop.hpp"
+#include "harness/rig/rig.hpp"
+
+// An emulated arm behind a pseudo-terminal in this process, and a child process that moves it
+// through a guarded rig and then dies. What the arm does is seen in the emulator, not on the wire.
+
+namespace armjig::parol6 {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+using Wall = std::chrono::steady_clock;
+
+/// An arm that did not move for that long stands.
+constexpr auto kStanding = 60ms;
+/// An arm that stands has to go on standing for that long.
+constexpr auto kAfterwards = 100ms;
+/// So long after the death or the silence of its program an arm may still move. Half a second of it
+/// is the silence that the supervisor waits for.
+constexpr auto kBound = 1s;
+/// For a slow machine with sanitizers; only a failure takes that long.
+constexpr auto kPatience = 30s;
+
+/// What an arm does, told by the thread on which it lives. Times are those of the wall.
+struct Sight {
+  std::atomic<Wall::duration> until{};        ///< so far the arm was looked at
+  std::atomic<Wall::duration> last_motion{};  ///< a joint made its last step; 0: none did
+  std::atomic<bool> is_enabled{true};
+  std::atomic<int> frames{};  ///< telemetry that it sent
+
+  [[nodiscard]] bool has_moved() const { return last_motion.load() != Wall::duration{}; }
+  [[nodiscard]] bool stands_since(Wall::duration moment) const {
+    return until.load() - std::max(last_motion.load(), moment) > kStanding;
+  }
+};
+
+/// Looks at the arm every millisecond of its time, in whatever steps it is advanced.
+class WatchedArm final : public HostedStream {
+ public:
+  /// The arm has lived until `age`.
+  WatchedArm(Arm arm, Duration age, Sight& sight)
+      : arm_{std::move(arm)}, age_{age}, sight_{sight}, before_{positions()} {}
+
+  void receive(Instant time, Bytes bytes) override { arm_.receive(time + age_, bytes); }
+  void advance_to(Instant time) override {
+    const auto now = Wall::now().time_since_epoch();
+    while (reached_ < time) {
+      reached_ = std::min(time, reached_ + Duration{1ms});
+      arm_.advance_to(reached_ + age_);
+      const auto after = positions();
+      if (after != before_) sight_.last_motion = now - (time - reached_);
+      before_ = after;
+    }
+    sight_.is_enabled = arm_.board().is_enabled();
+    sight_.until = now;
+  }
+  [[nodiscard]] std::optional<Instant> next_event() const override {
+    const auto next = arm_.next_event();
+    return next ? std::optional{*next - age_} : std::nullopt;
+  }
+  [[nodiscard]] std::span<const SentBytes> sent() const override { return arm_.sent(); }
+  void clear_sent() override {
+    sight_.frames += static_cast<int>(arm_.sent().size());
+    arm_.clear_sent();
+  }
+
+ private:
+  [[nodiscard]] JointSteps positions() const {
+    JointSteps all;
+    std::ranges::transform(arm_.board().joints(), all.begin(), &Joint::position);
+    return all;
+  }
+
+  Arm arm_;
+  Duration age_;
+  Sight& sight_;
+  JointSteps before_;
+  Instant reached_{};
+};
+
+constexpr Duration kTimeToHome = 40s;
+
+const Arm& homed_arm() {
+  static const auto homed = [] {
+    Arm arm;
+    arm.receive(at({}), encode(CommandFrame{.command = Command::kHome}));
+    arm.receive(at(10ms), encode(CommandFrame{.command = Command::kIdle}));
+    arm.advance_to(at(kTimeToHome));
+    arm.clear_sent();
+    return arm;
+  }();
+  return homed;
+}
+
+/// A homed arm on a pseudo-terminal. It lives on a thread of its own from `start` on, so that
+/// children can be forked before there is one.
+class Bench {
+ public:
+  Bench() : host_{open(sight_)} {}
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+  ~Bench() {
+    host_.stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  void start() {
+    thread_ = std::thread{[this] { host_.run(); }};
+  }
+  [[nodiscard]] std::string target() const { return host_.targets().front(); }
+  [[nodiscard]] const Sight& sight() const { return sight_; }
+
+ private:
+  static Host open(Sight& sight) {
+    HostOptions options;
+    options.pty.emplace();
+    auto arm = std::make_unique<WatchedArm>(homed_arm(), kTimeToHome, sight);
+    return std::move(Host::open(std::move(arm), options).value());
+  }
+
+  Sight sight_;
+  Host host_;
+  std::thread thread_;
+};
+
+template <class Condition>
+[[nodiscard]] bool wait_until(Condition condition) {
+  const auto deadline = Wall::now() + kPatience;
+  while (!condition()) {
+    if (Wall::now() > deadline) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+// The program that dies.
+
+enum class Activity { kJog, kGoTo, kHome, kNothing };
+
+constexpr int kCannotOpen = 10;
+constexpr int kForbidden = 11;
+constexpr int kPortFailed = 12;
+
+Result<void> command(Activity activity, Drive& drive, int cycle) {
+  JointSpeeds slow;
+  slow.fill(StepsPerSecond{cycle / 300 % 2 == 0 ? 400 : -400});
+  auto goal = drive.telemetry() ? drive.telemetry()->position : JointSteps{};
+  goal[0] = goal[0] - Steps{cycle / 300 % 2 == 0 ? 40 : -40};
+  switch (activity) {
+    case Activity::kJog:
+      return drive.jog(slow);
+    case Activity::kGoTo:
+      return drive.telemetry() ? drive.go_to(goal, {}) : Result<void>{};
+    case Activity::kHome:
+      return cycle == 0 ? drive.home() : Result<void>{};
+    case Activity::kNothing:
+      break;
+  }
+  return {};
+}
+
+/// Moves arms for ever, if it is let.
+int move(const std::vector<std::string>& targets, Activity activity) {
+  const auto no_emulators = [](const Target&) -> Outcome<std::unique_ptr<StreamPort>> {
+    return problem(ErrorCode::kUnsupported, "", "");
+  };
+  std::deque<Rig> rigs;
+  std::deque<Drive> drives;
+  std::deque<DriveLoop> loops;
+  for (const auto& target : targets) {
+    RigOptions options;
+    options.target = parse_target(target).value();
+    options.permissions = Permissions::all();
+    auto rig = Rig::open("parol6", options, no_emulators);
+    if (!rig) return kCannotOpen;
+    rigs.push_back(*std::move(rig));
+    loops.emplace_back(rigs.back().port(), drives.emplace_back());
+  }
+  for (int cycle = 0;; ++cycle) {
+    for (std::size_t i = 0; i < rigs.size(); ++i) {
+      (void)command(activity, drives[i], cycle);
+      const auto done = loops[i].cycle();
+      if (!done) return done.error().code == ErrorCode::kForbidden ? kForbidden : kPortFailed;
+    }
+  }
+}
+
+/// A child process that moves arms.
+class Mover {
+ public:
+  Mover(const std::vector<std::string>& targets, Activity activity) : pid_{::fork()} {
+    if (pid_ == 0) ::_exit(move(targets, activity));
+  }
+  Mover(const Mover&) = delete;
+  Mover& operator=(const Mover&) = delete;
+  ~Mover() {
+    if (pid_ > 0) signal(SIGKILL);
+    if (pid_ > 0) (void)wait();
+  }
+
+  void signal(int number) const { ::kill(pid_, number); }
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  /// The exit code, or minus the signal that ended it.
+  int wait() {
+    int status = 0;
+    ::waitpid(std::exchange(pid_, -1), &status, 0);
+    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+  }
+
+ private:
+  pid_t pid_;
+};
+
+/// The supervisors among the children of a process.
+std::vector<pid_t> supervisors_of(pid_t parent) {
+  std::vector<pid_t> found;
+  for (const auto& entry : fs::directory_iterator{"/proc"}) {
+    std::ifstream stat{entry.path() / "stat"};
+    pid_t pid{};
+    pid_t its_parent{};
+    std::string name;
+    char state{};
+    if (stat >> pid >> name >> state >> its_parent && its_parent == parent &&
+        name == "(arm-supervisor)") {
+      found.push_back(pid);
+    }
+  }
+  return found;
+}
+
+// The tests.
+
+using Dice = std::mt19937_64;
+
+void sleep_up_to(Wall::duration most, Dice& dice) {
+  const auto microseconds = std::chrono::duration_cast<std::chrono::microseconds>(most).count();
+  std::this_thread::sleep_for(
+      std::chrono::microseconds{dice() % static_cast<std::uint64_t>(microseconds)});
+}
+
+class SupervisorTest : public ::testing::Test {
+ protected:
+  /// Supervisors outlive their program; they are handed to us, and each of them has to end.
+  SupervisorTest() { ::prctl(PR_SET_CHILD_SUBREAPER, 1); }
+  ~SupervisorTest() override {
+    EXPECT_TRUE(wait_until([] { return ::waitpid(-1, nullptr, WNOHANG) < 0; }))
+        << "a supervisor does not end";
+    std::cout << "moved on for at most "
+              << std::chrono::duration_cast<std::chrono::microseconds>(worst_).count() << " us in "
+              << count_ << " moments\n";
+  }
+
+  /// The arm has to come to rest because of what happened at `moment`, and to rest on.
+  void expect_rest(const Sight& sight, Wall::time_point time) {
+    const auto moment = time.time_since_epoch();
+    ASSERT_TRUE(wait_until([&] { return sight.stands_since(moment); })) << "it does not stop";
+    const auto last = sight.last_motion.load();
+    std::this_thread::sleep_for(kAfterwards);
+    EXPECT_EQ(sight.last_motion.load(), last) << "the arm moves again";
+    const auto moved_on = last - moment;
+    EXPECT_LT(moved_on, kBound);
+    worst_ = std::max(worst_, moved_on);
+    ++count_;
+  }
+  static void expect_motion(const Sight& sight) {
+    ASSERT_TRUE(wait_until([&] { return sight.has_moved(); })) << "the arm never moved";
+  }
+  static void expect_disabled(const Sight& sight) {
+    ASSERT_TRUE(wait_until([&] { return !sight.is_enabled; })) << "nobody sent the stop";
+  }
+
+  /// Kills the program of a moving arm.
+  void kill_while_moving(Activity activity, Dice& dice) {
+    Bench bench;
+    Mover mover{{bench.target()}, activity};
+    bench.start();
+    expect_motion(bench.sight());
+    sleep_up_to(300ms, dice);
+    const auto moment = Wall::now();
+    mover.signal(SIGKILL);
+    expect_disabled(bench.sight());
+    expect_rest(bench.sight(), moment);
+  }
+
+  /// Kills it while it opens the port, starts the supervisor, says its first words.
+  void kill_while_beginning(Activity activity, Dice& dice) {
+    Bench bench;
+    Mover mover{{bench.target()}, activity};
+    bench.start();
+    sleep_up_to(40ms, dice);
+    const auto moment = Wall::now();
+    mover.signal(SIGKILL);
+    expect_rest(bench.sight(), moment);
+  }
+
+  void kill_at_random_moments(Activity activity, int moments) {
+    Dice dice{static_cast<std::uint64_t>(activity) + 1};
+    for (int i = 0; i < moments; ++i) {
+      SCOPED_TRACE(i);
+      i % 3 == 0 ? kill_while_beginning(activity, dice) : kill_while_moving(activity, dice);
+    }
+  }
+
+  /// A program that hangs; when it wakes up it must not go on.
+  void hang(Activity activity, Dice& dice) {
+    Bench bench;
+    Mover mover{{bench.target()}, activity};
+    bench.start();
+    expect_motion(bench.sight());
+    sleep_up_to(100ms, dice);
+    const auto moment = Wall::now();
+    mover.signal(SIGSTOP);
+    expect_disabled(bench.sight());
+    expect_rest(bench.sight(), moment);
+    const auto last = bench.sight().last_motion.load();
+    mover.signal(SIGCONT);
+    // One that homes has only idle frames to send, which it may.
+    if (activity != Activity::kHome) {
+      EXPECT_EQ(mover.wait(), kForbidden);
+    }
+    std::this_thread::sleep_for(kAfterwards);
+    EXPECT_EQ(bench.sight().last_motion.load(), last) << "it moves the arm when it wakes up";
+  }
+
+ private:
+  Wall::duration worst_{};
+  int count_ = 0;
+};
+
+TEST_F(SupervisorTest, AnArmThatJogsStopsWhenItsProgramIsKilled) {
+  kill_at_random_moments(Activity::kJog, 15);
+}
+
+TEST_F(SupervisorTest, AnArmThatGoesToPlacesStopsWhenItsProgramIsKilled) {
+  kill_at_random_moments(Activity::kGoTo, 9);
+}
+
+TEST_F(SupervisorTest, AnArmThatHomesStopsWhenItsProgramIsKilled) {
+  kill_at_random_moments(Activity::kHome, 12);
+}
+
+TEST_F(SupervisorTest, AnArmStopsWhenItsProgramHangsAndDoesNotGoOn) {
+  Dice dice{7};
+  for (const auto activity : {Activity::kJog, Activity::kGoTo, Activity::kHome}) {
+    SCOPED_TRACE(static_cast<int>(activity));
+    hang(activity, dice);
+  }
+}
+
+TEST_F(SupervisorTest, TwoArmsOfOneProgramBothStop) {
+  Bench first;
+  Bench second;
+  Mover mover{{first.target(), second.target()}, Activity::kJog};
+  first.start();
+  second.start();
+  expect_motion(first.sight());
+  expect_motion(second.sight());
+  const auto moment = Wall::now();
+  mover.signal(SIGKILL);
+  expect_disabled(first.sight());
+  expect_disabled(second.sight());
+  expect_rest(first.sight(), moment);
+  expect_rest(second.sight(), moment);
+}
+
+TEST_F(SupervisorTest, AnArmStopsWhenItsSupervisorIsKilledAndItsProgramMayNotMoveItAnyMore) {
+  Bench bench;
+  Mover mover{{bench.target()}, Activity::kJog};
+  bench.start();
+  expect_motion(bench.sight());
+  const auto supervisors = supervisors_of(mover.pid());
+  ASSERT_THAT(supervisors, ::testing::SizeIs(1));
+  const auto moment = Wall::now();
+  ::kill(supervisors.front(), SIGKILL);
+  expect_disabled(bench.sight());
+  expect_rest(bench.sight(), moment);
+  EXPECT_EQ(mover.wait(), kForbidden);
+}
+
+TEST_F(SupervisorTest, HasASessionOfItsOwnAndOnlyItsTwoFilesOpen) {
+  Bench bench;
+  Mover mover{{bench.target()}, Activity::kJog};
+  bench.start();
+  expect_motion(bench.sight());
+  const auto supervisors = supervisors_of(mover.pid());
+  ASSERT_THAT(supervisors, ::testing::SizeIs(1));
+  EXPECT_EQ(::getsid(supervisors.front()), supervisors.front());
+  const fs::path open_files{"/proc/" + std::to_string(supervisors.front()) + "/fd"};
+  EXPECT_EQ(std::distance(fs::directory_iterator{open_files}, {}), 2);
+}
+
+TEST_F(SupervisorTest, OfAnArmThatStandsLeavesItAlone) {
+  Bench bench;
+  Mover mover{{bench.target()}, Activity::kNothing};
+  bench.start();
+  ASSERT_TRUE(wait_until([&] { return bench.sight().frames > 5; }));
+  mover.signal(SIGKILL);
+  EXPECT_EQ(mover.wait(), -SIGKILL);
+  ASSERT_TRUE(wait_until([] { return ::waitpid(-1, nullptr, WNOHANG) < 0; }));
+  EXPECT_TRUE(bench.sight().is_enabled);
+}
+
+}  // namespace
+}  // namespace armjig::parol6
