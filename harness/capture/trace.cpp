@@ -34,8 +34,9 @@ class LineReader {
     if (found == line_.end()) return 0;
     const bool fits = found->is_number_integer() && !is_too_large(*found);
     const auto value = fits ? found->get<std::int64_t>() : 0;
-    if (!fits || value < least || value > most) complain(key, "is not a whole number in range");
-    return value;
+    if (fits && value >= least && value <= most) return value;
+    complain(key, "is not a whole number in range");
+    return 0;
   }
 
   std::string text(const char* key) {
