@@ -113,7 +113,7 @@ void ImpairedPath::carry(Instant time, Bytes chunk) {
     ++statistics_.stalls;
     free_ = std::max(free_, time) + draw(impairment_.stall.length, random(kStallLength));
   }
-  // Drawn for each chunk, needed or not, so that one defect does not shift the course of others.
+  // Drawn for each chunk, needed or not, so that one defect does not shift another one.
   const bool is_lost = random(kLoss).happens(impairment_.loss);
   const bool is_doubled = random(kDoubling).happens(impairment_.doubling);
   const bool is_held = random(kReordering).happens(impairment_.reordering.rate);

@@ -65,8 +65,8 @@ struct ImpairmentStatistics {
 
 /// One direction of a bad link: chunks in with their times, chunks out when they are due. Does no
 /// I/O; the same chunks at the same times with the same seed come out the same. Each kind of defect
-/// draws from a source of its own, so that another one switched on or off does not change its
-/// course.
+/// draws from a source of its own: which chunks are lost, doubled, held back or stalled does not
+/// depend on what else is switched on.
 ///
 /// Times that it is given never decrease. What comes out is in order of time, and of coming in but
 /// for reordered chunks; a chunk stays in one piece or in neighbouring pieces.

@@ -17,7 +17,8 @@ Outcome<std::unique_ptr<StreamPort>> LoggedStream::log(std::unique_ptr<StreamPor
   std::ofstream file{path, std::ios::trunc};
   file << fmt::format(R"({{"format":"golden-trace/1","device":"{}","title":"wire log"}})",
                       device.device)
-       << std::endl;
+       << '\n'
+       << std::flush;
   if (!file) {
     return problem(ErrorCode::kCannotWrite, path, "check that the folder exists and is writable");
   }
@@ -51,7 +52,7 @@ void LoggedStream::write_line(Direction direction, Bytes bytes) {
     file_ << separator << to_json(message);
     separator = ",";
   }
-  file_ << (messages.empty() ? "}" : "]}") << std::endl;
+  file_ << (messages.empty() ? "}" : "]}") << '\n' << std::flush;
 }
 
 }  // namespace armjig
