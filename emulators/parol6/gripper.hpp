@@ -17,9 +17,9 @@ namespace armjig::parol6 {
 /// What the fingers meet. Places are position bytes (0 open, 255 closed) of an uncalibrated
 /// gripper. Fingers that are beyond such a place already stay where they are.
 struct GripperPlant {
-  std::optional<std::uint8_t> stop_closing;  ///< something between the fingers
-  std::optional<std::uint8_t> stop_opening;  ///< something around them, gripped from inside
-  bool has_end_stops = true;                 ///< false: the motor turns free of the fingers
+  std::optional<std::uint8_t> stop_closing{};  ///< something between the fingers
+  std::optional<std::uint8_t> stop_opening{};  ///< something around them, gripped from inside
+  bool has_end_stops = true;                   ///< false: the motor turns free of the fingers
 
   friend bool operator==(const GripperPlant&, const GripperPlant&) = default;
 };
