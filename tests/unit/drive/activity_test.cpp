@@ -178,8 +178,8 @@ TEST(Activity, StopEndsAHomingThatSomebodyElseBegan) {
 TEST(Activity, TheEmergencyStopEndsWhateverGoesOn) {
   for (const bool homes : {false, true}) {
     Jig jig;
-    auto begun = homes ? begin_home(jig.drive)
-                       : begin_jog_for(jig.drive, 0, StepsPerSecond{500}, 1min);
+    auto begun =
+        homes ? begin_home(jig.drive) : begin_jog_for(jig.drive, 0, StepsPerSecond{500}, 1min);
     ASSERT_TRUE(begun);
     EXPECT_FALSE(jig.ending(**begun, 2s));
     jig.press_estop();
@@ -209,10 +209,8 @@ TEST(Activity, OutputsAreSeenInTelemetry) {
   expect(jig.ending(begin_outputs(jig.drive, 0)), true, "out1 is off, out2 is off");
 }
 
-constexpr GripperSetPoint kHalfClosed{.position = 100,
-                                      .speed = 60,
-                                      .current = Milliamperes{500},
-                                      .command = 0xD0};
+constexpr GripperSetPoint kHalfClosed{
+    .position = 100, .speed = 60, .current = Milliamperes{500}, .command = 0xD0};
 
 TEST(Activity, TheGripperMovesOnceItIsCalibrated) {
   Jig jig;

@@ -21,8 +21,8 @@ TEST(Joint, KnowsTheStepsOfTheStandbyPosition) {
 
 TEST(Joint, KnowsTheDegreesOfAStep) {
   // 360 / (6400 * reduction)
-  constexpr std::array kDegrees{0.0087890625, 0.0028125, 0.00310855263, 0.0140625,
-                                0.0140625,    0.005625};
+  constexpr std::array kDegrees{0.0087890625, 0.0028125, 0.00310855263,
+                                0.0140625,    0.0140625, 0.005625};
   for (std::size_t j = 0; j < kJointCount; ++j) {
     EXPECT_NEAR(kJoints[j].angle(Steps{1}).value, kDegrees[j], 1e-11) << j;
     EXPECT_NEAR(kJoints[j].speed(StepsPerSecond{-1}).value, -kDegrees[j], 1e-11) << j;
