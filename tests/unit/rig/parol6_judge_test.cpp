@@ -214,7 +214,7 @@ std::vector<test::ByteVector> half_sent() {
   for (const int length : {0, 1, 2, 52, 85, 255}) {
     auto bytes = test::hex("FF FF FF");
     bytes.push_back(static_cast<std::byte>(length));
-    for (const std::size_t more : {0, 1, 83, 84, 253, 254, 255, 256}) {
+    for (const std::size_t more : {0U, 1U, 83U, 84U, 253U, 254U, 255U, 256U}) {
       all.push_back(test::joined(bytes, test::ByteVector(more, std::byte{0x02})));
     }
   }
