@@ -84,7 +84,8 @@ class Homing final : public Activity {
       return done(fmt::format("homed in {:.1f} s", seconds(event.time - *began_)));
     }
     auto ending = Activity::take(drive, event);
-    if (event.kind == DriveEvent::Kind::kNothingMoved) ending = failed("homing does not go on");
+    if (event.kind == DriveEvent::Kind::kNothingMoved)
+      ending = failed("homing does not go on: is the board disabled?");
     if (ending) drive.disable();
     return ending;
   }
