@@ -15,6 +15,7 @@ namespace armjig::parol6 {
 [[nodiscard]] std::span<const Requirement> command_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> jog_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> go_to_requirements() noexcept;
+[[nodiscard]] std::span<const Requirement> home_run_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> home_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> demo_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> gripper_requirements() noexcept;

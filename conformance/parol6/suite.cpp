@@ -35,8 +35,8 @@ Suite suite() noexcept {
       Chapter{"Commands", command_requirements(), command_cases()},
       Chapter{"Jog and stepping", jog_requirements(), jog_cases()},
       Chapter{"Go-to law", go_to_requirements(), go_to_cases()},
-      Chapter{"Homing", home_requirements(), home_cases()},
-      Chapter{"Homing, a whole run", {}, home_run_cases()},
+      Chapter{"Homing, a whole run", home_run_requirements(), home_run_cases()},
+      Chapter{"Homing, interrupted and repeated", home_requirements(), home_cases()},
       Chapter{"Demonstration", demo_requirements(), demo_cases()},
       Chapter{"Gripper", gripper_requirements(), gripper_cases()},
   };
