@@ -6,7 +6,7 @@
 
 namespace armjig::parol6 {
 
-Arm::Arm(const ArmOptions& options) : board_{options.plant, options.timing} {
+Arm::Arm(const ArmOptions& options) : board_{options.plant, options.timing, options.profile} {
   if (options.gripper) gripper_.emplace(*options.gripper);
 }
 
