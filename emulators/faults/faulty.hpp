@@ -67,6 +67,12 @@ class Faulty {
   [[nodiscard]] std::span<const SentBytes> sent() const noexcept { return sent_; }
   void clear_sent() noexcept { sent_.clear(); }
 
+  bool set_input(Instant time, std::string_view input, std::int64_t value)
+    requires requires(Device device) { device.set_input(time, input, value); }
+  {
+    return device_.set_input(time, input, value);
+  }
+
  private:
   void take_sent() {
     for (auto message : device_.sent()) {
