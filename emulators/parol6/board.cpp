@@ -42,7 +42,7 @@ constexpr GripperReport kGripperAtPowerUp{.id = 0,
                                           .object_detection = 1};
 
 std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant,
-                                                  const Profile& profile) noexcept {
+                                                  const BoardProfile& profile) noexcept {
   std::array<Joint, kJointCount> joints;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     joints[j].axis = plant.axes[j];
@@ -61,7 +61,7 @@ constexpr Instant instant(std::int64_t pass) noexcept {
 
 }  // namespace
 
-Board::Board(const Plant& plant, const BoardTiming& timing, const Profile& profile)
+Board::Board(const Plant& plant, const BoardTiming& timing, const BoardProfile& profile)
     : profile_{profile},
       timing_{timing},
       joints_{joints_at_power_up(plant, profile)},

@@ -48,7 +48,7 @@ struct Emission {
 class Board {
  public:
   explicit Board(const Plant& plant, const BoardTiming& timing = {},
-                 const Profile& profile = kFirmware);
+                 const BoardProfile& profile = kFirmware);
 
   /// Bytes that become readable at `time`. Runs the passes before `time` first. Times of all
   /// inputs and of `advance_to` must not decrease.
@@ -136,7 +136,7 @@ class Board {
   [[nodiscard]] Micros clock(std::int64_t pass) const noexcept;
   void set_plant(const Plant& plant) noexcept;
 
-  Profile profile_;
+  BoardProfile profile_;
   BoardTiming timing_;
   std::int64_t start_ = 0;      ///< virtual microseconds at which the main loop was entered
   std::int64_t next_pass_ = 0;  ///< virtual microseconds

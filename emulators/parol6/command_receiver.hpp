@@ -24,7 +24,7 @@ class CommandReceiver {
                                ///< step and as long as its input
   };
 
-  explicit CommandReceiver(const Profile& profile) noexcept
+  explicit CommandReceiver(const BoardProfile& profile) noexcept
       : resynchronises_{profile.resynchronises},
         check_{profile.check},
         strict_{kCommandPayloadSize, profile.check} {}

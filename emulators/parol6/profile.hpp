@@ -8,7 +8,7 @@ namespace armjig::parol6 {
 /// In what boards that speak the protocol differ: one named choice for each difference between the
 /// shipped board and the one that the document promises (docs/spec/parol6.md, "Profiles and
 /// differences"). The defaults are the shipped board.
-struct Profile {
+struct BoardProfile {
   /// Which check bytes are taken (parol6.frame.check-ignored).
   CheckPolicy check = CheckPolicy::kIgnore;
   /// Takes frames of 52 bytes only, and loses none behind garbage (parol6.receive.resync).
@@ -46,12 +46,12 @@ struct Profile {
   /// Jog and go-to do not drive a joint of a homed arm out of its range.
   bool stops_at_bounds = false;
 
-  friend bool operator==(const Profile&, const Profile&) = default;
+  friend bool operator==(const BoardProfile&, const BoardProfile&) = default;
 };
 
-inline constexpr Profile kFirmware{};
+inline constexpr BoardProfile kFirmware{};
 
-inline constexpr Profile kDocumented{
+inline constexpr BoardProfile kDocumented{
     .check = CheckPolicy::kBoardOnly,
     .resynchronises = true,
     .acts_on_each_frame = true,

@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 
 constexpr Command kUnknown{42};
 
-Desk desk_with(const Profile& profile, const Plant& plant = standard_plant()) {
+Desk desk_with(const BoardProfile& profile, const Plant& plant = standard_plant()) {
   Desk desk{Board{plant, {}, profile}};
   desk.wait(1s);
   return desk;
@@ -39,7 +39,7 @@ ByteVector with_check(std::uint8_t check) {
 }
 
 /// A board that has homed: 100 once, then idle for as long as it takes.
-Desk homed_desk(const Profile& profile) {
+Desk homed_desk(const BoardProfile& profile) {
   auto desk = desk_with(profile);
   desk.send(command(Command::kHome));
   desk.wait(10ms);
@@ -48,7 +48,7 @@ Desk homed_desk(const Profile& profile) {
 }
 
 /// Home, and what comes next, until J1 has left its switch again.
-Desk interrupted_desk(const Profile& profile, Command code) {
+Desk interrupted_desk(const BoardProfile& profile, Command code) {
   auto desk = desk_with(profile);
   desk.send(command(Command::kHome));
   desk.wait(10ms);
@@ -65,7 +65,7 @@ TEST(DocumentedBoard, TakesOnlyTheCheckByteOfTheDocument) {
   EXPECT_EQ(desk.send(with_check(0x00)).size(), 0U);
 }
 
-TEST(Profile, ChoosesWhichCheckBytesAreTakenOfEitherReceiver) {
+TEST(BoardProfile, ChoosesWhichCheckBytesAreTakenOfEitherReceiver) {
   for (auto profile : {kFirmware, kDocumented}) {
     const auto answers = [&profile](CheckPolicy policy, std::uint8_t check) {
       profile.check = policy;
@@ -222,7 +222,7 @@ TEST(DocumentedBoard, IsDisabledByTheEmergencyStop) {
   EXPECT_GT(counters(desk.board)[0], before);
 }
 
-TEST(Profile, MayStopJointsAtTheirBounds) {
+TEST(BoardProfile, MayStopJointsAtTheirBounds) {
   auto profile = kDocumented;
   profile.stops_at_bounds = true;
   auto desk = homed_desk(profile);
