@@ -6,6 +6,7 @@
 
 #include "conformance/parol6/board_bench.hpp"
 #include "conformance/parol6/chapters.hpp"
+#include "conformance/parol6/host/checker.hpp"
 #include "emulators/host/devices.hpp"
 
 namespace armjig::parol6 {
@@ -30,6 +31,7 @@ Suite suite() noexcept {
   static const std::array kChapters{
       Chapter{"Frames", frame_requirements(), frame_cases()},
       Chapter{"Telemetry", telemetry_requirements(), telemetry_cases()},
+      Chapter{"Host programs", host_requirements(), {}},
   };
   return {"parol6", "0.2", kChapters, kStarts, open};
 }
