@@ -204,7 +204,9 @@ Exit watch(const Options& options) {
   Watch watch{rig->port(), entry.make(period), period,
               options,     form_of(options),   needs_pace ? Pace::By::kWallClock : Pace::By::kPort};
   const auto result = watch.run();
-  fmt::print(options.json ? stderr : stdout, "{}", watch.summary());
+  auto* const out = options.json ? stderr : stdout;
+  fmt::print(out, "{}", watch.summary());
+  if (const auto done = rig->impairments()) fmt::print(out, "impaired   {}\n", to_string(*done));
   if (!result) {
     return report(
         {result.error().code, options.target.target, "is it still there and switched on?"});
