@@ -6,6 +6,7 @@
 
 #include "conformance/parol6/board_bench.hpp"
 #include "conformance/parol6/chapters.hpp"
+#include "conformance/parol6/host/checker.hpp"
 #include "emulators/host/devices.hpp"
 
 namespace armjig::parol6 {
@@ -39,6 +40,7 @@ Suite suite() noexcept {
       Chapter{"Homing, interrupted and repeated", home_requirements(), home_cases()},
       Chapter{"Demonstration", demo_requirements(), demo_cases()},
       Chapter{"Gripper", gripper_requirements(), gripper_cases()},
+      Chapter{"Host programs", host_requirements(), {}},
   };
   return {"parol6", "0.2", kChapters, kStarts, open};
 }

@@ -10,9 +10,10 @@
 
 namespace armjig::parol6 {
 
-/// An emulated board as its options describe it: `profile=firmware`, `pass-us=N` (main loop period
-/// in microseconds, 1 to 1000), `fault=KIND:FIELD` (several with `,` between them). `where` is for
-/// messages. Problems: `kUnknownOption`, `kBadValue`.
+/// An emulated board as its options describe it: `profile=firmware|documented`, what of that to
+/// change (`crc=ignore|d4|d4-or-e4`, `estop=report|disable`, `bounds=none|stop`), `pass-us=N` (main
+/// loop period in microseconds, 1 to 1000), `fault=KIND:FIELD` (several with `,` between them).
+/// `where` is for messages. Problems: `kUnknownOption`, `kBadValue`.
 [[nodiscard]] Outcome<Faulty<Arm>> make_arm(const DeviceOptions& options, const std::string& where);
 
 }  // namespace armjig::parol6

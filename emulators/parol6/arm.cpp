@@ -42,7 +42,7 @@ bool set_in_plant(Plant& plant, std::string_view name, std::int64_t value) noexc
 
 }  // namespace
 
-Arm::Arm(const ArmOptions& options) : board_{options.plant, options.timing} {
+Arm::Arm(const ArmOptions& options) : board_{options.plant, options.timing, options.profile} {
   if (options.gripper) gripper_.emplace(*options.gripper);
 }
 

@@ -20,6 +20,7 @@ namespace armjig::parol6 {
 struct ArmOptions {
   Plant plant = standard_plant();
   BoardTiming timing{};
+  BoardProfile profile = kFirmware;
   std::optional<GripperOptions> gripper = GripperOptions{};  ///< none: nothing is on the CAN
 };
 

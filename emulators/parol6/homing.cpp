@@ -170,9 +170,7 @@ void Homing::finish(std::array<Joint, kJointCount>& joints) noexcept {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     joints[j].stepper.set_position(kHomingTable[j].standby);
   }
-  seen_ = {};
-  seen_slow_ = {};
-  stages_ = {};
+  forget();
 }
 
 }  // namespace armjig::parol6

@@ -59,6 +59,13 @@ class Homing {
   /// Forgets the stages, but not which switches were seen.
   void reset() noexcept { stages_ = {}; }
 
+  /// Forgets everything but which joints are homed.
+  void forget() noexcept {
+    reset();
+    seen_ = {};
+    seen_slow_ = {};
+  }
+
   /// `flag(joint)` for each homed one.
   [[nodiscard]] std::uint8_t homed() const noexcept { return homed_; }
 
