@@ -44,6 +44,8 @@ struct Requirement {
   /// device that breaks the documented one and obeys this one deviates as known.
   std::string_view instead{};
   Role role = Role::kDevice;
+  /// Why no case can check it on the wire; empty if one does.
+  std::string_view unobservable{};
 };
 
 }  // namespace armjig

@@ -42,6 +42,9 @@ using Speeds = std::array<int, kJointCount>;  ///< steps/s
 [[nodiscard]] CommandFrame go_to(const std::array<Steps, kJointCount>& positions,
                                  const Speeds& speeds = {});
 
+/// Idle, with something for the gripper.
+[[nodiscard]] CommandFrame with_gripper(const GripperSetPoint& set_point);
+
 /// A conversation with a PAROL6 board, in the words of its protocol.
 class BoardBench final : public StreamBench {
  public:
@@ -53,7 +56,8 @@ class BoardBench final : public StreamBench {
   [[nodiscard]] Duration noise() const override { return noise_; }
 
   /// Sends a frame and takes its answer. None in time is a silence (`Bench::fail_by_silence`).
-  Answer ask(const CommandFrame& frame);
+  Answer ask(const CommandFrame& frame) { return ask(frame, answer_time()); }
+  Answer ask(const CommandFrame& frame, Duration within);
   /// Sends several frames in one write and takes an answer to each.
   std::vector<Answer> ask_together(const std::vector<CommandFrame>& frames);
   /// `ask`, then time for the board to act on it.
@@ -95,12 +99,16 @@ class BoardBench final : public StreamBench {
                    const TelemetryFrame& before);
   void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
 
+  /// All answers of the last whole run of homing, 10 ms apart or less, the first one from before.
+  [[nodiscard]] const std::vector<Answer>& homing_log() const noexcept { return homing_log_; }
+
   /// Time in which an answer has to come.
   [[nodiscard]] Duration answer_time() const;
   /// Time after which none will.
   [[nodiscard]] Duration silence_time() const;
-  /// The board is switched off and on before the next case, for this one leaves traces that no
-  /// command takes away.
+  /// The board is switched off and on before the next case, and all around it put back, for this
+  /// one leaves traces that no command takes away. For cases with a hand at the board, and for
+  /// those that no guard lets through.
   void spoil() noexcept { is_spoiled_ = true; }
 
   static constexpr Duration kFramePeriod = std::chrono::milliseconds{10};
@@ -113,12 +121,17 @@ class BoardBench final : public StreamBench {
  private:
   [[nodiscard]] std::optional<Answer> next_answer(Instant asked, Duration within);
   void power_cycle();
+  void put_back_surroundings();
   void enable();
+  void walk_back();
   void home();
   void walk_to_standby();
   [[nodiscard]] std::string behind(std::string text) const;
 
   std::string about_;
+  std::vector<Answer> homing_log_;
+  std::optional<std::array<Steps, kJointCount>> origin_;  ///< where cases begin, if not homed
+  Instant last_asked_{};
   Duration noise_{};
   bool is_spoiled_ = false;
 };

@@ -30,7 +30,16 @@ Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
 Suite suite() noexcept {
   static const std::array kChapters{
       Chapter{"Frames", frame_requirements(), frame_cases()},
+      Chapter{"Receiving", receive_requirements(), receive_cases()},
       Chapter{"Telemetry", telemetry_requirements(), telemetry_cases()},
+      Chapter{"Inputs, outputs and emergency stop", io_requirements(), io_cases()},
+      Chapter{"Commands", command_requirements(), command_cases()},
+      Chapter{"Jog and stepping", jog_requirements(), jog_cases()},
+      Chapter{"Go-to law", go_to_requirements(), go_to_cases()},
+      Chapter{"Homing, a whole run", home_run_requirements(), home_run_cases()},
+      Chapter{"Homing, interrupted and repeated", home_requirements(), home_cases()},
+      Chapter{"Demonstration", demo_requirements(), demo_cases()},
+      Chapter{"Gripper", gripper_requirements(), gripper_cases()},
       Chapter{"Host programs", host_requirements(), {}},
   };
   return {"parol6", "0.2", kChapters, kStarts, open};

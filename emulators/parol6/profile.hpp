@@ -33,7 +33,7 @@ struct BoardProfile {
   /// Keeps the gripper's current within 0 to 1300 mA (parol6.gripper.current-range).
   bool bounds_current = false;
   /// Telemetry says which gripper was commanded, at which speed, and what it holds
-  /// (parol6.telemetry.constants).
+  /// (parol6.telemetry.gripper-id).
   bool reports_gripper = false;
   /// Telemetry says which joints of a homed arm left their range, until clear error
   /// (parol6.telemetry.position-error).
