@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/conformance_mutants.hpp"
 #include "cli/target_options.hpp"
 #include "conformance/run.hpp"
 #include "conformance/suite.hpp"
@@ -245,6 +246,7 @@ void add_conformance(CLI::App& app, Action& action) {
   add_report_files(*command, options->files);
   command->add_flag("--list", options->list, "name the requirements and stop");
   add_diff(*command, action);
+  add_conformance_mutants(*command, action);
   command->callback([options, command, &action] {
     if (!command->get_subcommands().empty()) return;
     action = [options] { return conformance(*options); };

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "emulators/parol6/profile.hpp"
-#include "harness/wire/parol6/fields.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
 namespace armjig::parol6 {
@@ -81,15 +80,14 @@ class OptionReader {
     }
   }
 
-  void read_faults(std::vector<Fault>& faults) {
+  void read_faults(ArmOptions& arm, Defects& defects, std::vector<Fault>& sent) {
     const auto option = options_.find("fault");
     if (option == options_.end()) return;
     std::string_view list = option->second;
     while (!list.empty()) {
       const auto end = list.find(',');
-      const auto fault = parse_fault(list.substr(0, end), telemetry_fields());
-      if (!fault) return complain(fault.error().code, fault.error().where, fault.error().hint);
-      faults.push_back(*fault);
+      const auto added = add_fault(list.substr(0, end), arm, defects, sent);
+      if (!added) return complain(added.error().code, added.error().where, added.error().hint);
       list.remove_prefix(end == std::string_view::npos ? list.size() : end + 1);
     }
   }
@@ -108,18 +106,19 @@ class OptionReader {
 
 }  // namespace
 
-Outcome<Faulty<Arm>> make_arm(const DeviceOptions& options, const std::string& where) {
+Outcome<Faulty<DefectiveArm>> make_arm(const DeviceOptions& options, const std::string& where) {
   ArmOptions arm;
-  std::vector<Fault> faults;
+  Defects defects;
+  std::vector<Fault> sent;
   OptionReader reader{options, where};
   reader.choose("profile", kProfiles, arm.profile);
   reader.choose("crc", kCheckPolicies, arm.profile.check);
   reader.choose("estop", kEstops, arm.profile.disables_at_estop);
   reader.choose("bounds", kBounds, arm.profile.stops_at_bounds);
   reader.read_pass_period(arm.timing.pass_period);
-  reader.read_faults(faults);
+  reader.read_faults(arm, defects, sent);
   if (reader.problem()) return tl::unexpected{*reader.problem()};
-  return Faulty{Arm{arm}, std::move(faults), kCommandFrameSize};
+  return Faulty{DefectiveArm{arm, std::move(defects)}, std::move(sent), kCommandFrameSize};
 }
 
 }  // namespace armjig::parol6

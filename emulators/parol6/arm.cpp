@@ -42,7 +42,8 @@ bool set_in_plant(Plant& plant, std::string_view name, std::int64_t value) noexc
 
 }  // namespace
 
-Arm::Arm(const ArmOptions& options) : board_{options.plant, options.timing, options.profile} {
+Arm::Arm(const ArmOptions& options)
+    : board_{options.plant, options.timing, options.profile, options.figures} {
   if (options.gripper) gripper_.emplace(*options.gripper);
 }
 

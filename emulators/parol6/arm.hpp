@@ -21,6 +21,7 @@ struct ArmOptions {
   Plant plant = standard_plant();
   BoardTiming timing{};
   BoardProfile profile = kFirmware;
+  BoardFigures figures{};
   std::optional<GripperOptions> gripper = GripperOptions{};  ///< none: nothing is on the CAN
 };
 

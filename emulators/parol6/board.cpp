@@ -9,23 +9,10 @@
 namespace armjig::parol6 {
 namespace {
 
-constexpr StepRate kMaxSpeed{50'000};  // parol6.jog.clamp
 constexpr std::array<StepsPerSecond2, kJointCount> kPowerUpAcceleration{
     StepsPerSecond2{1000}, StepsPerSecond2{1000}, StepsPerSecond2{500},
     StepsPerSecond2{500},  StepsPerSecond2{500},  StepsPerSecond2{100}};
 
-/// The built-in two-leg demonstration.
-struct DemoParameters {
-  float max_speed_and_acceleration{};  ///< steps/s and steps/s^2
-  Steps out{};
-  Steps back{};
-};
-constexpr std::array<DemoParameters, kJointCount> kDemoTable{{{6000, Steps{6179}, Steps{10240}},
-                                                              {4000, Steps{-22222}, Steps{-32000}},
-                                                              {3500, Steps{49812}, Steps{57905}},
-                                                              {3500, Steps{0}, Steps{0}},
-                                                              {3500, Steps{4059}, Steps{0}},
-                                                              {7500, Steps{46075}, Steps{32000}}}};
 constexpr std::int64_t kDemoSleepUs = 2'000'000;
 constexpr std::int64_t kStartUpUs = 740'000;
 
@@ -41,14 +28,14 @@ constexpr GripperReport kGripperAtPowerUp{.id = 0,
                                           .status = 1,
                                           .object_detection = 1};
 
-std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant,
-                                                  const BoardProfile& profile) noexcept {
+std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant, const BoardProfile& profile,
+                                                  const BoardFigures& figures) noexcept {
   std::array<Joint, kJointCount> joints;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     joints[j].axis = plant.axes[j];
-    joints[j].pressed_level = kHomingTable[j].pressed_level;
+    joints[j].pressed_level = figures.homing[j].pressed_level;
     joints[j].stepper.set_max_speed(profile.bounds_speeds ? to_rate(kJointBounds[j].max_speed)
-                                                          : kMaxSpeed);
+                                                          : figures.max_speed);
     joints[j].stepper.set_acceleration(kPowerUpAcceleration[j]);
     joints[j].stepper.set_speed(StepRate{});
   }
@@ -61,11 +48,14 @@ constexpr Instant instant(std::int64_t pass) noexcept {
 
 }  // namespace
 
-Board::Board(const Plant& plant, const BoardTiming& timing, const BoardProfile& profile)
+Board::Board(const Plant& plant, const BoardTiming& timing, const BoardProfile& profile,
+             const BoardFigures& figures)
     : profile_{profile},
+      figures_{figures},
       timing_{timing},
-      joints_{joints_at_power_up(plant, profile)},
+      joints_{joints_at_power_up(plant, profile, figures)},
       inputs_{plant.inputs},
+      homing_{figures.homing},
       receiver_{profile},
       gripper_{kGripperAtPowerUp} {}
 
@@ -98,7 +88,7 @@ void Board::reboot(Instant time) {
   const auto now_us = microseconds(time);
   auto sent = std::move(sent_);
   const auto was_plain = uses_plain_loop_;
-  *this = Board{plant(), timing_, profile_};
+  *this = Board{plant(), timing_, profile_, figures_};
   sent_ = std::move(sent);
   uses_plain_loop_ = was_plain;
   start_ = next_pass_ = now_us + kStartUpUs;
@@ -338,14 +328,14 @@ Board::Next Board::demo(Micros now) noexcept {
   if (demo_leg_ == DemoLeg::kWaiting) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       auto& stepper = joints_[j].stepper;
-      stepper.set_max_speed(StepRate{kDemoTable[j].max_speed_and_acceleration});
-      stepper.set_acceleration(StepsPerSecond2{kDemoTable[j].max_speed_and_acceleration});
-      stepper.move_to(kDemoTable[j].out);
+      stepper.set_max_speed(StepRate{figures_.demo[j].max_speed_and_acceleration});
+      stepper.set_acceleration(StepsPerSecond2{figures_.demo[j].max_speed_and_acceleration});
+      stepper.move_to(figures_.demo[j].out);
     }
     demo_leg_ = DemoLeg::kOut;
   }
   if (demo_leg_ == DemoLeg::kOut && !run_all(now)) {
-    for (std::size_t j = 0; j < kJointCount; ++j) joints_[j].stepper.move_to(kDemoTable[j].back);
+    for (std::size_t j = 0; j < kJointCount; ++j) joints_[j].stepper.move_to(figures_.demo[j].back);
     is_asleep_ = true;
     is_settled_ = false;
     return Next::kSleep;

@@ -10,6 +10,7 @@
 
 #include "emulators/parol6/can.hpp"
 #include "emulators/parol6/command_receiver.hpp"
+#include "emulators/parol6/figures.hpp"
 #include "emulators/parol6/homing.hpp"
 #include "emulators/parol6/joint.hpp"
 #include "emulators/parol6/plant.hpp"
@@ -48,7 +49,7 @@ struct Emission {
 class Board {
  public:
   explicit Board(const Plant& plant, const BoardTiming& timing = {},
-                 const BoardProfile& profile = kFirmware);
+                 const BoardProfile& profile = kFirmware, const BoardFigures& figures = {});
 
   /// Bytes that become readable at `time`. Runs the passes before `time` first. Times of all
   /// inputs and of `advance_to` must not decrease.
@@ -84,6 +85,8 @@ class Board {
   [[nodiscard]] std::span<const Joint, kJointCount> joints() const noexcept { return joints_; }
   [[nodiscard]] const Homing& homing() const noexcept { return homing_; }
   [[nodiscard]] bool is_enabled() const noexcept { return is_enabled_; }
+  /// Told to home, and not there yet.
+  [[nodiscard]] bool is_homing() const noexcept { return home_wanted_ && !home_finished_; }
   [[nodiscard]] std::uint8_t outputs() const noexcept { return latched_.in_out; }
 
   /// For tests and benchmarks: computes every pass by itself, as the firmware does.
@@ -137,6 +140,7 @@ class Board {
   void set_plant(const Plant& plant) noexcept;
 
   BoardProfile profile_;
+  BoardFigures figures_;
   BoardTiming timing_;
   std::int64_t start_ = 0;      ///< virtual microseconds at which the main loop was entered
   std::int64_t next_pass_ = 0;  ///< virtual microseconds
