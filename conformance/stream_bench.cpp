@@ -55,7 +55,7 @@ void StreamBench::drain(Duration quiet) {
 
 void StreamBench::touch(std::string_view input, std::int64_t value) {
   if (is_deaf() || rig_.port().touch(input, value)) return;
-  skip(fmt::format("nobody is there to set {}", input));
+  skip(fmt::format("needs a hand at the device, to set {}", input));
 }
 
 /// Reads once.

@@ -225,6 +225,11 @@ void BoardBench::bring_to(std::size_t start) {
   if (start == kHomed) home();
 }
 
+void BoardBench::spoil() {
+  touch("in1", 0);  // as it is anyway; it shows whether there is a hand
+  is_spoiled_ = is_spoiled_ || !is_over();
+}
+
 void BoardBench::power_cycle() {
   put_back_surroundings();
   touch("power", 1);

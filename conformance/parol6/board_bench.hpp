@@ -107,9 +107,9 @@ class BoardBench final : public StreamBench {
   /// Time after which none will.
   [[nodiscard]] Duration silence_time() const;
   /// The board is switched off and on before the next case, and all around it put back, for this
-  /// one leaves traces that no command takes away. For cases with a hand at the board, and for
-  /// those that no guard lets through.
-  void spoil() noexcept { is_spoiled_ = true; }
+  /// one leaves traces that no command takes away. Skips the case where nobody can do that, which
+  /// is also where a guard would not let it pass.
+  void spoil();
 
   static constexpr Duration kFramePeriod = std::chrono::milliseconds{10};
   /// Longer than two passes of any board's loop.

@@ -104,8 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
         Recorded{"home_full_a", {"parol6.host.looks-first", "parol6.host.rate-slow"}},
         Recorded{"home_hold_command_a",
                  {"parol6.host.looks-first", "parol6.host.rate-slow", "parol6.host.home-held"}},
-        Recorded{"home_while_disabled_a",
-                 {"parol6.host.move-disabled", "parol6.host.rate-slow"}},
+        Recorded{"home_while_disabled_a", {"parol6.host.move-disabled", "parol6.host.rate-slow"}},
         Recorded{"timing_gaps_a", {"parol6.host.jitter", "parol6.host.rate-slow"}}));
 
 }  // namespace
