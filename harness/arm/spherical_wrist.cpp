@@ -126,7 +126,7 @@ Branches SphericalWrist::solve(const Pose& pose, const SixJoints& seed) const no
   const auto target = to_base_.rotation * (pose.rotation * tool_to_wrist_);
   const bool is_above_base = std::abs(lateral_) < kStraight && reach < kStraight;
   const double towards = is_above_base ? seed[0] : std::atan2(y, x);
-  const double offset = std::atan2(lateral_, reach);
+  const double offset = is_above_base ? 0 : std::atan2(lateral_, reach);
   solve_plane({wrapped(towards - offset), reach - shoulder_x_, z - shoulder_z_, false}, target,
               seed, found);
   solve_plane(
