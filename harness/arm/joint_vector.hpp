@@ -5,7 +5,6 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
-#include <initializer_list>
 #include <span>
 
 namespace armjig::arm {
@@ -21,9 +20,7 @@ class PerJoint {
   constexpr explicit PerJoint(std::size_t size) noexcept : size_{size} {
     assert(size <= kMaxJoints);
   }
-  constexpr PerJoint(std::initializer_list<T> values) noexcept
-      : PerJoint{std::span<const T>{values.begin(), values.size()}} {}
-  constexpr explicit PerJoint(std::span<const T> values) noexcept : PerJoint{values.size()} {
+  constexpr explicit PerJoint(std::span<const T> values) noexcept : PerJoint(values.size()) {
     std::ranges::copy(values, begin());
   }
 

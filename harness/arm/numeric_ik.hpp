@@ -11,8 +11,8 @@ namespace armjig::arm {
 struct NumericIkOptions {
   double tolerance_m = 1e-9;
   double tolerance_rad = 1e-9;
-  int iterations = 60;     ///< of each attempt
-  int attempts = 60;       ///< the first from the seed, the others from drawn postures
+  int iterations = 80;     ///< at most, of each attempt
+  int attempts = 100;      ///< the first from the seed, the others from drawn postures
   std::uint64_t draw = 1;  ///< another number draws other postures
 };
 
@@ -28,7 +28,7 @@ struct NumericIkAnswer {
 };
 
 /// Damped least squares within the joints' limits, for any arm. The same arguments give the same
-/// answer. Joints that turn for ever stay within half a turn of `seed`.
+/// answer. Joints that turn for ever come out within half a turn of `seed`.
 [[nodiscard]] NumericIkAnswer numeric_ik(const Arm& arm, const Pose& pose,
                                          std::span<const double> seed,
                                          const NumericIkOptions& options = {}) noexcept;
