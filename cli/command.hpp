@@ -30,6 +30,9 @@ void add_conformance(CLI::App& app, Action& action);
 void add_console(CLI::App& app, Action& action);
 void add_decode(CLI::App& app, Action& action);
 void add_emulate(CLI::App& app, Action& action);
+void add_plan(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_script(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_watch(CLI::App& app, Action& action);
 
