@@ -62,7 +62,7 @@ class Arguments {
     }
     const auto found = value_of(*text);
     if (found >= lowest && found <= highest) return found;
-    return wrong(at, fmt::format("{} is {} to {}, not {}", what, lowest, highest, *text));
+    return wrong(at, fmt::format("{} is {} to {}, not {}", what, lowest, highest, quoted(*text)));
   }
 
   Read<std::int16_t> integer(std::int16_t lowest, std::int16_t highest, std::string_view what) {
