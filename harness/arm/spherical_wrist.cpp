@@ -182,6 +182,14 @@ void SphericalWrist::solve_wrist(const Branch& arm, const Rotation& target, doub
   add(wrapped(q4 - pi), -q5, wrapped(q6 - pi), true);
 }
 
+SphericalWrist::Clearance SphericalWrist::clearance(const SixJoints& joints) const noexcept {
+  const double upper = upper_.angle + joints[1];
+  const double fore = fore_.angle + joints[1] + elbow_sign_ * joints[2];
+  const double out = shoulder_x_ + upper_.length * std::sin(upper) + fore_.length * std::sin(fore);
+  return {std::abs(out), std::abs(std::sin(fore - upper)),
+          std::abs(std::sin(joints[4] + wrist_bend_))};
+}
+
 std::optional<SixJoints> within_limits(const Arm& arm, const SixJoints& joints,
                                        const SixJoints& seed) noexcept {
   constexpr double kAtLimit = 1e-9;

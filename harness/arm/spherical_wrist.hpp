@@ -47,6 +47,14 @@ class SphericalWrist {
   /// (wrist above the base's axis) or joint 4 (wrist straight) is as in `seed`.
   [[nodiscard]] Branches solve(const Pose& pose, const SixJoints& seed = {}) const noexcept;
 
+  /// How far a posture is from the three kinds of singularity, each 0 there.
+  struct Clearance {
+    double shoulder{};  ///< distance of the wrist's centre from axis 1, in the arm's plane, metres
+    double elbow{};     ///< sine of the elbow's bend
+    double wrist{};     ///< sine of the wrist's bend
+  };
+  [[nodiscard]] Clearance clearance(const SixJoints& joints) const noexcept;
+
  private:
   /// A link of the arm's plane: the plane turns about its y axis, and an angle is from z to x.
   struct Link {

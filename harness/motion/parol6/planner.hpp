@@ -59,11 +59,11 @@ struct Move {
   Tracking tracking{};
 };
 
-/// At a posture where the path is lost.
+/// Where a line cannot be followed, because a joint would have to leap near a singularity.
 enum class OnSingularity : std::uint8_t {
   kRefuse,  ///< the move
-  kStop,    ///< at the sample before
-  kTry,     ///< go on with the nearest that damped least squares finds
+  kStop,    ///< the arm, at the sample before
+  kTry,     ///< go on: a joint that would leap comes as fast as it can, beside the line meanwhile
 };
 
 enum class LimitCheck : std::uint8_t {
@@ -111,7 +111,7 @@ struct Refusal {
 /// For people: `j5 would be at 90.000 deg at 0.00 s; its range ends at 90.000 deg`.
 [[nodiscard]] std::string describe(const Refusal& refusal);
 
-/// A posture on the path in which the tool cannot move in every direction.
+/// A stretch of a line where the tool cannot move in every direction, followed or not.
 struct SingularityNote {
   enum class Kind : std::uint8_t {
     kShoulder,  ///< the wrist's centre is above the base's axis
