@@ -2,12 +2,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,10 +17,9 @@
 #include "harness/drive/parol6/drive_loop.hpp"
 #include "harness/report/report.hpp"
 #include "harness/script/check.hpp"
-#include "harness/script/format.hpp"
 #include "harness/script/program_run.hpp"
+#include "harness/script/run_output.hpp"
 #include "harness/script/schedule.hpp"
-#include "harness/wire/parol6/joints.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
 namespace armjig::cli {
@@ -54,6 +50,7 @@ struct Options {
   bool must_home = false;
   bool is_unhomed = false;
   bool json = false;
+  std::string plots;
 };
 
 /// Why nothing more is to be done. Without a text it was said already.
@@ -132,58 +129,6 @@ class Session {
   Signals signals_;
 };
 
-std::string steps_text(std::size_t joint, std::int32_t steps) {
-  return fmt::format("{:+} steps, {:+.3f} deg", steps,
-                     parol6::kJoints[joint].angle(Steps{steps}).value);
-}
-
-std::size_t worst_of(const std::array<std::int32_t, parol6::kJointCount>& errors) {
-  const auto worst =
-      std::ranges::max_element(errors, {}, [](std::int32_t error) { return std::abs(error); });
-  return static_cast<std::size_t>(worst - errors.begin());
-}
-
-Table results_table(const script::Program& program, const script::ProgramRun& run) {
-  Table table{{"line", "command", "worst on the way", "error", "worst at the end", "error"}, {}};
-  for (const auto& move : run.moves()) {
-    const auto& statement = program.statements[move.statement];
-    const auto way = worst_of(move.largest_error);
-    const auto end = worst_of(move.final_error);
-    table.rows.push_back({std::to_string(statement.place.line),
-                          to_text(statement.command, program.dialect), fmt::format("j{}", way + 1),
-                          steps_text(way, move.largest_error[way]), fmt::format("j{}", end + 1),
-                          steps_text(end, move.final_error[end])});
-  }
-  return table;
-}
-
-std::string results_json(const script::Program& program, const script::ProgramRun& run,
-                         const Options& options, const Session& session, bool has_ended) {
-  nlohmann::ordered_json json{
-      {"schema", "armjig.run/1"},        {"file", options.script.file},
-      {"target", options.target.target}, {"dialect", to_string(program.dialect)},
-      {"ran_to_end", has_ended},         {"moves", nlohmann::ordered_json::array()},
-  };
-  for (const auto& move : run.moves()) {
-    const auto& statement = program.statements[move.statement];
-    const bool follows_speed = move.tracking == parol6::Tracking::kSpeed;
-    json["moves"].push_back({{"line", statement.place.line},
-                             {"command", to_text(statement.command, program.dialect)},
-                             {"tracking", follows_speed ? "speed" : "speed and position"},
-                             {"largest_error_steps", move.largest_error},
-                             {"final_error_steps", move.final_error}});
-  }
-  json["final_position_steps"] = nlohmann::ordered_json::array();
-  for (const auto& position : session.telemetry().position) {
-    json["final_position_steps"].push_back(position.value);
-  }
-  const auto& link = session.link();
-  json["link"] = {
-      {"sent", link.sent}, {"answered", link.answered}, {"late", link.late}, {"lost", link.lost}};
-  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
-  return json.dump(-1, ' ', false, kReplace) + '\n';
-}
-
 Halt refused(const script::Diagnostic& diagnostic, const std::string& file) {
   print_diagnostic(diagnostic, file);
   return {Exit::kUsage, {}};
@@ -236,6 +181,13 @@ std::optional<Halt> prepare(Session& session, const script::Program& program, Pl
   return check_whole(program, planning, options.script.file);
 }
 
+Outcome<void> write_plots(const script::ProgramRun& run, const std::string& folder) {
+  const auto plots = script::run_plots(run);
+  return write_file(folder + "/position.svg", to_svg(plots.position)).and_then([&] {
+    return write_file(folder + "/error.svg", to_svg(plots.error));
+  });
+}
+
 /// Prints what came of it.
 Exit run_on(Session& session, const script::Program& program, Planning planning,
             const Options& options) {
@@ -247,12 +199,23 @@ Exit run_on(Session& session, const script::Program& program, Planning planning,
   };
   if (const auto halt = prepare(session, program, planning, options)) return say(*halt);
   script::ProgramRun run{program, planning.settings};
+  if (!options.plots.empty()) run.keep_samples(script::kMostFrames / 10);
   const auto halt = session.go_through(run, "run");
   if (options.json) {
-    fmt::print("{}", results_json(program, run, options, session, !halt));
+    fmt::print("{}", script::to_json(program, run,
+                                     {.file = options.script.file,
+                                      .target = options.target.target,
+                                      .ran_to_end = !halt,
+                                      .position = session.telemetry().position,
+                                      .link = session.link()}));
   } else {
     fmt::print("{}", to_text(ReportSection{.title = "Tracking error of each move",
-                                           .table = results_table(program, run)}));
+                                           .table = script::results_table(program, run)}));
+  }
+  if (!options.plots.empty()) {
+    if (const auto written = write_plots(run, options.plots); !written) {
+      return report(written.error());
+    }
   }
   return halt ? say(*halt) : Exit::kPassed;
 }
@@ -288,6 +251,11 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--unhomed", options->is_unhomed, "run on an arm that was not homed")
       ->excludes(home);
   command->add_flag("--json", options->json, "print armjig.run/1 instead of a table");
+  command
+      ->add_option("--plots", options->plots,
+                   "write position.svg and error.svg of the joints that moved to this folder")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -47,6 +47,21 @@ Peak peak_of(const parol6::Plan& plan) {
   return peak;
 }
 
+/// The joint with the longest way, and how far that is, degrees.
+struct Leader {
+  std::size_t joint{};
+  double degrees{};
+};
+
+Leader leader_of(const JointSteps& from, const JointSteps& to) {
+  Leader leader;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const double way = parol6::degrees_of(j, to[j] - from[j]);
+    if (std::abs(way) > std::abs(leader.degrees)) leader = {j, way};
+  }
+  return leader;
+}
+
 std::string_view law_of(const parol6::Plan& plan) noexcept {
   return plan.law == parol6::Law::kTrapezoid ? "trapezoid" : "polynomial";
 }
@@ -163,7 +178,7 @@ nlohmann::ordered_json to_json(const Program& program, const ScheduledMove& move
       {"set_points", move.plan.set_points.size()},
       {"begins_s", time_of(move.first_frame)},
       {"duration_s", move.plan.duration},
-      {"leading_joint", move.plan.leading_joint + 1},
+      {"leading_joint", leader_of(move.start, end_of(move)).joint + 1},
       {"start_steps", values_of(move.start)},
       {"end_steps", values_of(end_of(move))},
       {"singularities", nlohmann::ordered_json::array()},
@@ -183,9 +198,8 @@ Table moves_table(const Program& program, const Schedule& schedule) {
               {}};
   for (const auto& move : schedule.moves) {
     const auto& statement = program.statements[move.statement];
-    const auto leading = move.plan.leading_joint;
+    const auto leader = leader_of(move.start, end_of(move));
     const auto peak = peak_of(move.plan);
-    const auto way = parol6::degrees_of(leading, end_of(move)[leading] - move.start[leading]);
     table.rows.push_back(
         {std::to_string(statement.place.line), to_text(statement.command, program.dialect),
          std::string{law_of(move.plan)}, fmt::format("{:.2f} s", time_of(move.first_frame)),

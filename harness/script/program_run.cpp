@@ -41,6 +41,7 @@ std::optional<parol6::Activity::Ending> ProgramRun::advance(parol6::Drive& drive
   tell_line();
   apply(drive, **frame);
   under_way_.push_back(wanted());
+  under_way_.back().frame = frames_++;
   return std::nullopt;
 }
 
@@ -55,6 +56,9 @@ void ProgramRun::compare(const parol6::JointSteps& position) {
   const auto seen = under_way_.front();
   under_way_.pop_front();
   if (!seen.move) return;
+  if (samples_.size() < samples_.capacity()) {
+    samples_.push_back({seen.frame, seen.position, position});
+  }
   auto& result = moves_[*seen.move];
   for (std::size_t j = 0; j < parol6::kJointCount; ++j) {
     const auto error = position[j].value - seen.position[j].value;
@@ -85,7 +89,7 @@ ProgramRun::Wanted ProgramRun::wanted() {
   const auto* const move = interpreter_.move();
   if (move == nullptr || move->sent == 0) return {};
   if (move->sent == 1) moves_.push_back({move->statement, move->plan.tracking, {}, {}});
-  return {moves_.size() - 1, move->position()};
+  return {moves_.size() - 1, move->position(), 0};
 }
 
 void ProgramRun::tell_line() {

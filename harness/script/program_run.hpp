@@ -23,6 +23,13 @@ struct MoveResult {
   std::array<std::int32_t, parol6::kJointCount> final_error{};  ///< when its last set-point was due
 };
 
+/// A set-point of a move, and where the joints were when the next one was due.
+struct RunSample {
+  std::size_t frame{};  ///< since the program began
+  parol6::JointSteps wanted{};
+  parol6::JointSteps seen{};
+};
+
 /// A program that runs on a drive, a frame each period, until the arm stands behind its last one.
 /// Joints, outputs and gripper are the interpreter's; what a frame has besides is the drive's, and
 /// the gripper is left alone until the program says something about it.
@@ -37,11 +44,16 @@ class ProgramRun final : public parol6::Activity {
   /// Those that have begun, in order.
   [[nodiscard]] const std::vector<MoveResult>& moves() const noexcept { return moves_; }
 
+  /// Keeps up to `most` samples of moves; none are kept otherwise.
+  void keep_samples(std::size_t most) { samples_.reserve(most); }
+  [[nodiscard]] const std::vector<RunSample>& samples() const noexcept { return samples_; }
+
  private:
   /// Where a frame wants the arm.
   struct Wanted {
     std::optional<std::size_t> move{};  ///< in `moves_`; none: nowhere in particular
     parol6::JointSteps position{};
+    std::size_t frame{};
   };
 
   [[nodiscard]] std::optional<Ending> advance(parol6::Drive& drive, Instant now) override;
@@ -54,6 +66,8 @@ class ProgramRun final : public parol6::Activity {
   const Program& program_;
   Interpreter interpreter_;
   std::vector<MoveResult> moves_;
+  std::vector<RunSample> samples_;
+  std::size_t frames_ = 0;
   std::deque<Wanted> under_way_;  ///< frames that telemetry does not show yet
   parol6::GripperSetPoint gripper_;
   std::optional<std::size_t> told_statement_;
