@@ -29,6 +29,8 @@ void add_completion(CLI::App& app, Action& action);
 void add_conformance(CLI::App& app, Action& action);
 void add_console(CLI::App& app, Action& action);
 void add_decode(CLI::App& app, Action& action);
+void add_devices(CLI::App& app, Action& action);
+void add_doctor(CLI::App& app, Action& action);
 void add_emulate(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_watch(CLI::App& app, Action& action);
