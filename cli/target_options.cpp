@@ -9,7 +9,8 @@ namespace armjig::cli {
 
 void add_target_options(CLI::App& app, TargetOptions& options) {
   app.add_option("--target", options.target,
-                 "where the device is: emulated:[?OPTION=VALUE&...], pty:PATH or tcp:HOST:PORT")
+                 "where the device is: emulated:[?OPTION=VALUE&...], serial:PATH[,BAUD], "
+                 "usb:VID:PID, pty:PATH or tcp:HOST:PORT")
       ->type_name("TARGET");
   app.add_option("--allow", options.allow,
                  "what may be done to a device that is not emulated: state,move,home,grip or all "

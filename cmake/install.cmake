@@ -27,10 +27,14 @@ if(ARMJIG_BUILD_CLI)
   list(APPEND CPACK_COMPONENTS_ALL runtime)
   install_papers(runtime armjig)
   add_custom_command(OUTPUT armjig.bash COMMAND armjig completion bash > armjig.bash VERBATIM)
-  add_custom_target(completion ALL DEPENDS armjig.bash)
+  add_custom_command(OUTPUT 60-armjig.rules COMMAND armjig doctor --udev-rules > 60-armjig.rules
+                     VERBATIM)
+  add_custom_target(printed ALL DEPENDS armjig.bash 60-armjig.rules)
   install(TARGETS armjig RUNTIME COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/armjig.bash RENAME armjig
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
+  install(FILES ${PROJECT_BINARY_DIR}/60-armjig.rules DESTINATION lib/udev/rules.d
+          COMPONENT runtime)
   install(DIRECTORY captures/parol6 DESTINATION ${CMAKE_INSTALL_DATADIR}/armjig/captures
           COMPONENT runtime)
 endif()
@@ -51,7 +55,7 @@ set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "Emulates robot-arm controllers to the byte
 against the rules of their protocols, and replays recordings of real devices.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libarmjig-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libexpected-dev, libfmt-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libexpected-dev, libfmt-dev, libserialport-dev")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "Static libraries, headers and the CMake package: codecs and
 emulated devices without any I/O, and what the armjig program is made of.")
 include(CPack)

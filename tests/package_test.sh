@@ -15,6 +15,7 @@ check_program() {
   "$prefix/bin/armjig" --version | grep -x 'armjig [0-9.]*'
   "$prefix/bin/armjig" trace verify "$prefix/share/armjig/captures" | tail -n 1
   grep -q 'complete .* armjig$' "$prefix/share/bash-completion/completions/armjig"
+  grep -q 'parol6' "$prefix/lib/udev/rules.d/60-armjig.rules"
 }
 
 # A project that knows only the prefix finds the libraries in it, and runs.

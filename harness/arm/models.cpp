@@ -94,13 +94,15 @@ constexpr std::array kParol6Tools{
 };
 
 constexpr std::array kModels{
-    ModelEntry{"parol6", "PAROL6 of the commander, its tool included", parol6_commander},
-    ModelEntry{"parol6-flange", "PAROL6 of the Python API, up to the flange", parol6_flange},
-    ModelEntry{"jaco2", "Jaco 2, six joints, curved wrist",
+    ModelEntry{"parol6", "PAROL6 of the commander, its tool included", Convention::kCommander,
+               parol6_commander},
+    ModelEntry{"parol6-flange", "PAROL6 of the Python API, up to the flange", Convention::kXyz,
+               parol6_flange},
+    ModelEntry{"jaco2", "Jaco 2, six joints, curved wrist", Convention::kXyz,
                [] { return jaco(JacoVariant::kJaco2Curved); }},
-    ModelEntry{"jaco1", "Jaco 1, six joints, curved wrist",
+    ModelEntry{"jaco1", "Jaco 1, six joints, curved wrist", Convention::kXyz,
                [] { return jaco(JacoVariant::kJaco1Curved); }},
-    ModelEntry{"jaco2-spherical", "Jaco 2, six joints, spherical wrist",
+    ModelEntry{"jaco2-spherical", "Jaco 2, six joints, spherical wrist", Convention::kXyz,
                [] { return jaco(JacoVariant::kJaco2Spherical); }},
 };
 

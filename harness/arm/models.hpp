@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "harness/arm/arm.hpp"
+#include "harness/arm/orientation.hpp"
 
 /// The arms on our bench. Facts from the vendors' public tables, named in models.cpp.
 namespace armjig::arm {
@@ -37,6 +38,7 @@ enum class JacoVariant : std::uint8_t {
 struct ModelEntry {
   std::string_view name;
   std::string_view what;
+  Convention convention{};  ///< in which its own programs show orientations
   Arm (*make)();
 };
 [[nodiscard]] std::span<const ModelEntry> models() noexcept;

@@ -14,8 +14,13 @@ namespace armjig {
 /// `NAME=VALUE` pairs that describe an emulated device.
 using DeviceOptions = std::map<std::string, std::string, std::less<>>;
 
-/// Where a device is, as users write it everywhere: `SCHEME:ADDRESS?OPTION=VALUE&...`, for example
-/// `pty:/dev/pts/5`, `tcp:127.0.0.1:4000`, `emulated:?fault=zero:echo`.
+/// Where a device is, as users write it everywhere:
+///
+///     emulated:?OPTION=VALUE&...   in this process, in virtual time
+///     serial:/dev/ttyACM0[,BAUD]   a serial port; 3,000,000 baud if nothing else is said
+///     usb:0483:5740                the serial port of the only USB device with that VID:PID
+///     pty:/dev/pts/5               a pseudo-terminal, such as that of an emulator
+///     tcp:HOST:PORT                a byte stream over TCP
 struct Target {
   std::string text;  ///< as written
   std::string scheme;

@@ -77,6 +77,11 @@ def rows(folder):
         ("trace verify /nonexistent", "", 2, ["!/nonexistent"]),
         # Targets that are not there: 3. Nothing selected: 4.
         ("conformance parol6 --target pty:/nonexistent", "", 3, ["!/nonexistent"]),
+        ("conformance parol6 --target serial:/nonexistent", "", 3, ["!/nonexistent"]),
+        ("conformance parol6 --target serial:/dev/null", "", 2, ["!not a serial port"]),
+        ("conformance parol6 --target serial:/dev/x,fast", "", 2, ["!serial:PATH,BAUD"]),
+        ("conformance parol6 --target usb:0483", "", 2, ["!usb:0483:5740"]),
+        ("conformance parol6 --target usb:ffff:fffe", "", 3, ["!plugged in"]),
         ("conformance parol6 --target emulated: --filter nothing-like-that", "", 4, ["!--list"]),
         (f"trace verify {other}", "", 4, ["!toaster", "traces: 0 identical: 0 different: 0"]),
         # What it is for.
@@ -98,6 +103,8 @@ def rows(folder):
          [f"corrupted.jsonl:{line}:", "io: expected", "traces: 2 identical: 1 different: 1"]),
         (f"trace verify {broken} {RECORDING}", "", 2,
          ["!broken.jsonl:2:", "traces: 1 identical: 1 different: 0"]),
+        ("devices --json", "", 0, ['"armjig.devices/1"']),
+        ("doctor --udev-rules", "", 0, ['idVendor}=="0483"']),
         ("completion bash", "", 0, ["_armjig"]),
         ("watch parol6 --target emulated: --seconds 2", "", 0, ["estop released", "0 lost"]),
         ("watch parol6 --target emulated: --seconds 1 --json", "", 0, ["armjig.telemetry/1"]),

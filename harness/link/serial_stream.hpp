@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/error.hpp"
+#include "harness/link/stream_port.hpp"
+
+/// Serial ports of this machine: USB boards, adapters, built-in ones. Not pseudo-terminals, which
+/// have no hardware behind them that could be asked.
+namespace armjig {
+
+/// Who made a USB device, and what it is.
+struct UsbId {
+  std::uint16_t vendor{};
+  std::uint16_t product{};
+
+  friend auto operator<=>(const UsbId&, const UsbId&) = default;
+};
+
+/// `0483:5740`.
+[[nodiscard]] std::string to_string(UsbId id);
+
+/// Reads two numbers of one to four hexadecimal digits with a colon between them. Fails with
+/// `kBadValue`.
+[[nodiscard]] Result<UsbId> parse_usb_id(std::string_view text);
+
+/// A serial port as the operating system describes it; what it does not know is empty.
+struct SerialPort {
+  std::string path;
+  std::string description;  ///< for people
+  std::optional<UsbId> usb;
+  std::string manufacturer;
+  std::string product;
+  std::string serial_number;
+};
+
+/// All that are there now, by path. Problems: `kSystem`.
+[[nodiscard]] Outcome<std::vector<SerialPort>> list_serial_ports();
+
+/// Where a serial port is and how fast.
+struct SerialAddress {
+  /// What the PAROL6 board is opened with; a USB port takes any number and ignores it.
+  static constexpr std::uint32_t kUsualBaud = 3'000'000;
+
+  std::string path;  ///< may be a symbolic link, as in /dev/serial/by-id
+  std::uint32_t baud = kUsualBaud;
+
+  friend bool operator==(const SerialAddress&, const SerialAddress&) = default;
+};
+
+/// Reads `PATH` or `PATH,BAUD`. Problems: `kBadTarget`.
+[[nodiscard]] Outcome<SerialAddress> parse_serial_address(std::string_view text);
+
+/// Opens a port with 8 data bits, no parity, 1 stop bit, no flow control; what came before is
+/// thrown away. Its time is monotonic since opening; `write` gives up with `kTimedOut` when the
+/// other side takes nothing for two seconds; a port that is unplugged is `kDisconnected`. The port
+/// is locked against other programs that lock it as well, and against all that are not root's.
+/// Problems: `kNotFound`, `kNoPermission`, `kBusy`, `kBadTarget` (not a serial port),
+/// `kUnsupported` (not at that speed), `kDisconnected`, `kSystem`.
+[[nodiscard]] Outcome<std::unique_ptr<StreamPort>> open_serial(const SerialAddress& address);
+
+}  // namespace armjig

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/testbed/usb_bench.hpp"
+
+#include <asm/ioctls.h>
+#include <asm/termbits.h>
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <vector>
+
+namespace armjig::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The bench answers on a thread of the library.
+std::mutex speeds_guard;
+std::map<std::string, std::uint32_t> speeds;
+
+void note_speed(UMockdevIoctlClient* client) {
+  auto* argument = umockdev_ioctl_client_get_arg(client);
+  auto* modes = umockdev_ioctl_data_resolve(argument, 0, sizeof(termios2), nullptr);
+  if (modes == nullptr) return;
+  const std::lock_guard lock{speeds_guard};
+  speeds[umockdev_ioctl_client_get_devnode(client)] =
+      reinterpret_cast<const termios2*>(modes->data)->c_ospeed;
+  g_object_unref(modes);
+}
+
+/// A pseudo-terminal has no modem lines; it knows everything else that a serial port is asked for.
+gboolean answer(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpointer /*data*/) {
+  switch (umockdev_ioctl_client_get_request(client)) {
+    case TIOCMGET:
+    case TIOCMSET:
+    case TIOCMBIS:
+    case TIOCMBIC:
+      umockdev_ioctl_client_complete(client, 0, 0);
+      return TRUE;
+    case TCSETS2:
+      note_speed(client);
+      break;
+    default:
+      break;
+  }
+  gint error_number = 0;
+  const auto result = umockdev_ioctl_client_execute(client, &error_number, nullptr);
+  umockdev_ioctl_client_complete(client, result, error_number);
+  return TRUE;
+}
+
+std::string root_of(UMockdevTestbed* bed) {
+  gchar* text = umockdev_testbed_get_root_dir(bed);
+  std::string root = text;
+  g_free(text);
+  return root;
+}
+
+std::string add(UMockdevTestbed* bed, const char* subsystem, const std::string& name,
+                const char* parent, std::vector<const char*> attributes,
+                std::vector<const char*> properties) {
+  attributes.push_back(nullptr);
+  properties.push_back(nullptr);
+  gchar* path = umockdev_testbed_add_devicev(bed, subsystem, name.c_str(), parent,
+                                             const_cast<gchar**>(attributes.data()),
+                                             const_cast<gchar**>(properties.data()));
+  std::string added = path == nullptr ? "" : path;
+  g_free(path);
+  return added;
+}
+
+}  // namespace
+
+UsbBench::UsbBench() : bed_{umockdev_testbed_new()}, ioctls_{umockdev_ioctl_base_new()} {
+  g_signal_connect(ioctls_, "handle-ioctl", G_CALLBACK(answer), nullptr);
+}
+
+UsbBench::~UsbBench() {
+  g_object_unref(ioctls_);
+  g_object_unref(bed_);
+}
+
+void UsbBench::plug_in(const Board& board, const std::string& terminal) {
+  const auto usb = add(bed_, "usb", "usb-of-" + board.name, nullptr,
+                       {"idVendor", board.vendor.c_str(), "idProduct", board.product.c_str(),
+                        "manufacturer", "STMicroelectronics", "product", "PAROL6 control board",
+                        "serial", board.serial_number.c_str(), "busnum", "1", "devnum", "7"},
+                       {"DEVTYPE", "usb_device"});
+  const auto interface = add(bed_, "usb", "interface-of-" + board.name, usb.c_str(),
+                             {"bInterfaceClass", "02"}, {"DEVTYPE", "usb_interface"});
+  const auto node = "/dev/" + board.name;
+  const auto tty = add(bed_, "tty", board.name, interface.c_str(), {}, {"DEVNAME", node.c_str()});
+  umockdev_testbed_set_attribute_link(bed_, tty.c_str(), "device", "..");
+  link(node, terminal);
+  ASSERT_TRUE(umockdev_testbed_attach_ioctl(bed_, node.c_str(), ioctls_, nullptr));
+}
+
+void UsbBench::pull_out(const Board& board) {
+  ASSERT_TRUE(umockdev_testbed_detach_ioctl(bed_, ("/dev/" + board.name).c_str(), nullptr));
+  const auto usb = "/sys/devices/usb-of-" + board.name;
+  const auto interface = usb + "/interface-of-" + board.name;
+  for (const auto& path : {interface + "/" + board.name, interface, usb}) {
+    umockdev_testbed_remove_device(bed_, path.c_str());
+  }
+  fs::remove(root_of(bed_) + "/dev/" + board.name);
+}
+
+void UsbBench::link(const std::string& path, const std::string& to) const {
+  const fs::path place{root_of(bed_) + path};
+  fs::create_directories(place.parent_path());
+  fs::remove(place);
+  fs::create_symlink(to, place);
+}
+
+std::uint32_t UsbBench::baud_of(const std::string& path) const {
+  const std::lock_guard lock{speeds_guard};
+  const auto speed = speeds.find(path);
+  return speed == speeds.end() ? 0 : speed->second;
+}
+
+}  // namespace armjig::testing

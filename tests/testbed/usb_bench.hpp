@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <umockdev.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace armjig::testing {
+
+/// A USB serial board as far as this process and its children can see: entries in /sys and a node
+/// in /dev that leads to a pseudo-terminal. It answers the ioctls that a pseudo-terminal lacks and
+/// passes on all others. Runs under umockdev-wrapper, without root.
+class UsbBench {
+ public:
+  struct Board {
+    std::string name;    ///< of the port: `ttyACM0`
+    std::string vendor;  ///< four hexadecimal digits
+    std::string product;
+    std::string serial_number;
+  };
+
+  UsbBench();
+  UsbBench(const UsbBench&) = delete;
+  UsbBench& operator=(const UsbBench&) = delete;
+  ~UsbBench();
+
+  /// Plugs a board in whose far end is the pseudo-terminal at `terminal`.
+  void plug_in(const Board& board, const std::string& terminal);
+  void pull_out(const Board& board);
+
+  /// A symbolic link on the bench, as udev rules make them.
+  void link(const std::string& path, const std::string& to) const;
+
+  /// The speed to which a port was set last, in baud; 0 if none was, or one of those that have a
+  /// name in <termios.h>: they do not pass the bench.
+  [[nodiscard]] std::uint32_t baud_of(const std::string& path) const;
+
+ private:
+  UMockdevTestbed* bed_;
+  UMockdevIoctlBase* ioctls_;
+};
+
+}  // namespace armjig::testing

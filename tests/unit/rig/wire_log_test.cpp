@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/rig/wire_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "emulators/parol6/arm.hpp"
+#include "harness/capture/trace.hpp"
+#include "harness/link/memory_stream.hpp"
+#include "harness/rig/rig.hpp"
+#include "tests/unit/support/bytes.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+const DissectorEntry& parol6_dissector() {
+  return *std::ranges::find(dissectors(), "parol6", &DissectorEntry::device);
+}
+
+class WireLog : public ::testing::Test {
+ protected:
+  ~WireLog() override { fs::remove(path_); }
+
+  [[nodiscard]] std::unique_ptr<StreamPort> logged_arm() const {
+    auto arm = std::make_unique<MemoryStream<parol6::Arm>>(parol6::Arm{});
+    return std::move(LoggedStream::log(std::move(arm), path_, parol6_dissector()).value());
+  }
+  [[nodiscard]] Trace trace() const { return read_trace(path_).value(); }
+  [[nodiscard]] std::vector<nlohmann::json> lines() const {
+    std::vector<nlohmann::json> all;
+    std::ifstream file{path_};
+    for (std::string line; std::getline(file, line);) all.push_back(nlohmann::json::parse(line));
+    return all;
+  }
+  [[nodiscard]] test::ByteVector logged(std::string_view direction) const {
+    test::ByteVector all;
+    for (const auto& event : trace().events) {
+      if (event.dir == direction) all = test::joined(std::move(all), event.bytes);
+    }
+    return all;
+  }
+
+  std::string path_ = fs::temp_directory_path() / ("armjig-wire-log-" + std::to_string(::getpid()));
+};
+
+/// A message of the host that the shipped board answers at once.
+const auto kIdle = encode(parol6::CommandFrame{.command = parol6::Command::kIdle});
+
+TEST_F(WireLog, HasEveryByteBothWaysInPiecesAsTheyCame) {
+  const auto port = logged_arm();
+  test::ByteVector written;
+  test::ByteVector read;
+  test::Dice dice{5};
+  for (int i = 0; i < 20; ++i) {
+    const auto cut = static_cast<std::size_t>(dice.between(0, 56));
+    ASSERT_TRUE(port->write(Bytes{kIdle}.first(cut)));
+    ASSERT_TRUE(port->write(Bytes{kIdle}.subspan(cut)));
+    written = test::joined(std::move(written), kIdle);
+    std::array<std::byte, 23> buffer;
+    const auto deadline = port->now() + 10ms;
+    while (const auto size = port->read(buffer, deadline).value()) {
+      read.insert(read.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(size));
+    }
+  }
+  EXPECT_EQ(read.size(), 20 * parol6::kTelemetryFrameSize);
+  EXPECT_TRUE(test::same_bytes(logged("to_device"), written));
+  EXPECT_TRUE(test::same_bytes(logged("from_device"), read));
+}
+
+TEST_F(WireLog, SaysWhen) {
+  const auto port = logged_arm();
+  std::array<std::byte, 64> buffer;
+  ASSERT_EQ(port->read(buffer, at(30ms)).value(), 0U);
+  ASSERT_TRUE(port->write(kIdle));
+  const auto events = trace().events;
+  ASSERT_EQ(events.size(), 1U) << "nothing was read, so there is nothing to write down";
+  EXPECT_EQ(events.front().time, at(30ms));
+}
+
+TEST_F(WireLog, SaysWhatItMeansWhereAMessageEnds) {
+  const auto port = logged_arm();
+  ASSERT_TRUE(port->write(Bytes{kIdle}.first(30)));
+  ASSERT_TRUE(port->write(Bytes{kIdle}.subspan(30)));
+  const auto all = lines();
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_FALSE(all[1].contains("messages"));
+  ASSERT_EQ(all[2]["messages"].size(), 1U);
+  EXPECT_EQ(all[2]["messages"][0]["schema"], "armjig.message/1");
+}
+
+TEST_F(WireLog, HasEachLineOnDiskBeforeTheCallReturns) {
+  const auto port = logged_arm();
+  EXPECT_EQ(trace().device, "parol6");
+  ASSERT_TRUE(port->write(kIdle));
+  EXPECT_EQ(trace().events.size(), 1U);
+}
+
+TEST_F(WireLog, LeavesOutWhatWasNotWritten) {
+  struct Broken final : StreamPort {
+    Result<void> write(Bytes /*bytes*/) override { return fail(ErrorCode::kDisconnected); }
+    Result<std::size_t> read(std::span<std::byte> /*into*/, Instant /*deadline*/) override {
+      return fail(ErrorCode::kDisconnected);
+    }
+    [[nodiscard]] Instant now() const override { return {}; }
+  };
+  const auto port =
+      std::move(LoggedStream::log(std::make_unique<Broken>(), path_, parol6_dissector()).value());
+  std::array<std::byte, 8> buffer;
+  EXPECT_FALSE(port->write(kIdle));
+  EXPECT_FALSE(port->read(buffer, {}));
+  EXPECT_TRUE(trace().events.empty());
+}
+
+TEST_F(WireLog, AFileThatCannotBeWrittenIsNamed) {
+  auto arm = std::make_unique<MemoryStream<parol6::Arm>>(parol6::Arm{});
+  const auto log = LoggedStream::log(std::move(arm), "/nonexistent/log", parol6_dissector());
+  ASSERT_FALSE(log);
+  EXPECT_EQ(log.error().code, ErrorCode::kCannotWrite);
+  EXPECT_EQ(log.error().where, "/nonexistent/log");
+}
+
+}  // namespace
+}  // namespace armjig

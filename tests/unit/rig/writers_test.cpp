@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who can write to a device, and that all of them pass the guard. The sources are searched for each
+// step of the way from a target string to a byte on a wire; whoever appears on it has to be listed
+// here, with the reason why that is safe.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace armjig {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file on the way, from the root of the tree, and why it may be there.
+struct Allowed {
+  const char* file;
+  const char* reason;
+};
+
+/// One step of the way.
+struct Step {
+  const char* what;
+  const char* pattern;
+  std::vector<Allowed> allowed;
+};
+
+// Everything that is not in the test program. emulators/ is the other end of the wire.
+constexpr std::array kRooms{"cli", "conformance", "emulators", "fuzz", "harness"};
+
+std::string read(const fs::path& path) {
+  std::ifstream in{path, std::ios::binary};
+  return {std::istreambuf_iterator<char>{in}, {}};
+}
+
+/// Comments may say what they like.
+std::string without_comments(const std::string& source) {
+  static const std::regex comment{"//[^\n]*"};
+  return std::regex_replace(source, comment, "");
+}
+
+struct Source {
+  std::string file;
+  std::string code;
+};
+
+const std::vector<Source>& sources() {
+  static const auto all = [] {
+    std::vector<Source> found;
+    const fs::path root{ARMJIG_SOURCE_DIR};
+    for (const auto* room : kRooms) {
+      for (const auto& entry : fs::recursive_directory_iterator{root / room}) {
+        const auto extension = entry.path().extension();
+        if (extension != ".cpp" && extension != ".hpp") continue;
+        found.push_back({fs::relative(entry.path(), root).generic_string(),
+                         without_comments(read(entry.path()))});
+      }
+    }
+    return found;
+  }();
+  return all;
+}
+
+std::vector<std::string> files_with(const std::string& pattern) {
+  const std::regex regex{pattern};
+  std::vector<std::string> files;
+  for (const auto& source : sources()) {
+    if (std::regex_search(source.code, regex)) files.push_back(source.file);
+  }
+  return files;
+}
+
+const std::vector<Step>& steps() {
+  static const std::vector<Step> all{
+      {"opening a device that is not emulated",
+       R"(\b(open_pty|open_tcp_stream|open_serial|make_tcp_session)\s*\()",
+       {{"harness/link/real_streams.cpp", "makes them"},
+        {"harness/link/real_streams.hpp", "declares them"},
+        {"harness/link/serial_stream.cpp", "makes them"},
+        {"harness/link/serial_stream.hpp", "declares them"},
+        {"harness/link/tcp_session.cpp", "makes them"},
+        {"harness/link/tcp_session.hpp", "declares them"},
+        {"harness/rig/target.cpp", "in open_stream, which only Rig::open calls (next step)"}}},
+      {"opening a target without a guard",
+       R"(\bopen_stream\s*\()",
+       {{"harness/rig/target.cpp", "makes it"},
+        {"harness/rig/target.hpp", "declares it"},
+        {"harness/rig/rig.cpp", "guards what is not emulated; rig_test.cpp shows that"}}},
+      {"opening a rig",
+       R"(Rig::open\s*\()",
+       {{"harness/rig/rig.cpp", "makes it"},
+        {"cli/target_options.cpp", "for every subcommand that has --target"}}},
+      {"writing to a port",
+       R"((\.|->)write\s*\()",
+       {{"cli/watch.cpp", "the port of the rig that it opened"},
+        {"conformance/bench.cpp", "the port of the rig that `armjig conformance` opened"},
+        {"harness/drive/parol6/drive_loop.cpp", "whoever makes a loop hands it the port of a rig"},
+        {"harness/link/impaired_bus.cpp", "passes on what it is given"},
+        {"harness/link/impaired_stream.cpp", "passes on what it is given"},
+        {"harness/link/memory_bus.hpp", "to an emulated device in memory"},
+        {"harness/link/reopening_stream.cpp", "passes on what it is given"},
+        {"harness/rig/guard.cpp", "is the guard"},
+        {"harness/rig/wire_log.cpp", "passes on what it is given"},
+        {"harness/report/report.cpp", "a file"},
+        {"harness/core/emulation.hpp", "a concept of emulated devices, no code"}}},
+      {"sending in a session",
+       R"(#include "harness/link/(session_port|tcp_session)\.hpp")",
+       {{"harness/link/impaired_session.hpp", "passes on what it is given"},
+        {"harness/link/memory_session.hpp", "to an emulated device in memory"},
+        {"harness/link/tcp_session.cpp", "makes them; nobody opens them yet"},
+        {"harness/link/tcp_session.hpp", "declares them"}}},
+      {"system calls that put bytes on a wire",
+       R"([^\w]::(write|pwrite|writev|send|sendto|sendmsg|sp_\w*write)\s*\()",
+       {{"emulators/host/pty_link.cpp", "an emulated device answers its client"},
+        {"harness/link/descriptor.cpp", "for the real ports of this room"},
+        {"harness/rig/supervisor.cpp", "the stop, which is always allowed; and to its parent"}}},
+      {"getting at the file behind a port",
+       R"(descriptor\(\))",
+       {{"harness/link/stream_port.hpp", "declares it"},
+        {"harness/link/real_streams.cpp", "answers it"},
+        {"harness/link/serial_stream.cpp", "answers it"},
+        {"harness/link/impaired_stream.hpp", "passes on what it is given"},
+        {"harness/rig/wire_log.hpp", "passes on what it is given"},
+        {"harness/rig/guard.hpp", "passes on what it is given"},
+        {"harness/rig/guard.cpp", "hands it to the supervisor, which writes only the stop"}}},
+      {"opening files by system call",
+       R"([^\w]::(open|openat|socket|posix_openpt|sp_open)\s*\()",
+       {{"emulators/host/pseudo_terminal.cpp",
+         "the terminal on which an emulated device is served"},
+        {"harness/link/real_streams.cpp", "pseudo-terminals"},
+        {"harness/link/serial_stream.cpp", "serial ports"},
+        {"harness/rig/doctor.cpp", "a pseudo-terminal, to see whether there are any"}}},
+      {"libraries that reach hardware",
+       R"(#include <(libserialport\.h|libusb[^>]*|linux/i2c[^>]*|i2c/[^>]*|linux/spi[^>]*)>)",
+       {{"harness/link/serial_stream.cpp", "sets serial ports up"}}},
+  };
+  return all;
+}
+
+TEST(Writers, EachOneIsListedWithAReason) {
+  for (const auto& step : steps()) {
+    std::vector<std::string> listed;
+    for (const auto& allowed : step.allowed) listed.emplace_back(allowed.file);
+    EXPECT_THAT(files_with(step.pattern), ::testing::UnorderedElementsAreArray(listed))
+        << "for " << step.what
+        << ". A new file must not get around the guard: let it write to the port of a Rig, then "
+           "list it here with the reason.";
+  }
+}
+
+TEST(Writers, TheSearchFindsWhatIsThere) {
+  EXPECT_GT(sources().size(), 100U);
+  EXPECT_EQ(without_comments("a // open_pty(\nb"), "a \nb");
+  EXPECT_THAT(files_with(R"(no_such_function_anywhere\()"), ::testing::IsEmpty());
+}
+
+TEST(Writers, TheOnlyWayToARigIsTheOneThatGuards) {
+  // Rig::open, step by step: what was opened goes into a guard unless it is emulated, and nothing
+  // behind that takes it out again.
+  const auto code = without_comments(read(fs::path{ARMJIG_SOURCE_DIR} / "harness/rig/rig.cpp"));
+  const auto opened = code.find("port = open_port(");
+  const auto asked = code.find("if (!options.target.is_emulated())");
+  const auto guarded = code.find("GuardedStream::guard(");
+  EXPECT_LT(opened, asked);
+  EXPECT_LT(asked, guarded);
+  EXPECT_EQ(code.find("= open_port(", opened + 1 + sizeof "port "), std::string::npos) << "twice";
+}
+
+}  // namespace
+}  // namespace armjig
