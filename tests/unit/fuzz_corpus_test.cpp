@@ -20,6 +20,9 @@
 #define LLVMFuzzerTestOneInput fuzz_parol6_splitter
 #include "fuzz/parol6_splitter.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_rbtscript
+#include "fuzz/rbtscript.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_trace_reader
 #include "fuzz/trace_reader.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -55,6 +58,8 @@ TEST(FuzzCorpus, CuttingTheStreamDifferentlyChangesNothing) {
 TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {
   run_corpus(fuzz_parol6_board, "parol6_board");
 }
+
+TEST(FuzzCorpus, AnyTextIsAProgramOrRefused) { run_corpus(fuzz_rbtscript, "rbtscript"); }
 
 TEST(FuzzCorpus, AnyTextIsATraceOrRefused) { run_corpus(fuzz_trace_reader, "trace_reader"); }
 

@@ -19,9 +19,6 @@
 
 namespace armjig::parol6 {
 
-using JointSteps = std::array<Steps, kJointCount>;
-using JointSpeeds = std::array<StepsPerSecond, kJointCount>;
-
 /// What happened on the link. A frame is lost if no answer came that could be its own.
 struct DriveStatistics {
   std::uint64_t sent = 0;
