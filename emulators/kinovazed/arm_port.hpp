@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "emulators/kinovazed/bench_arm.hpp"
+#include "emulators/kinovazed/jaco_arm.hpp"
 #include "emulators/kinovazed/plant.hpp"
 #include "harness/core/time.hpp"
 
@@ -51,7 +52,7 @@ inline constexpr std::array<std::string_view, 14> kArmCallNames{"arm_open",
   return kArmCallNames[static_cast<std::size_t>(call)];
 }
 
-using Plant = std::variant<BenchArm>;
+using Plant = std::variant<BenchArm, JacoArm>;
 
 /// The arm on its USB cable: a plant, and whether calls get through to it.
 class ArmPort {

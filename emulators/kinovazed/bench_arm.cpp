@@ -9,10 +9,6 @@
 namespace armjig::kinovazed {
 namespace {
 
-constexpr Pose kReadyPose{0.21F, -0.26F, 0.50F, 1.65F, 1.10F, 0.13F};
-constexpr Pose kFoldedPose{0.05F, -0.03F, 0.30F, 1.60F, 0.20F, 0.05F};
-constexpr double kStickLinear = 0.2;
-constexpr double kStickAngular = 0.4;
 constexpr std::array kAngles{&Pose::pitch, &Pose::yaw, &Pose::roll};
 constexpr std::array kPlaces{&Pose::x, &Pose::y, &Pose::z};
 
@@ -39,7 +35,7 @@ Pose between(const Pose& from, const Pose& to, double fraction) noexcept {
 BenchArm::BenchArm(const BenchOptions& options)
     : options_{options},
       mode_{options.start_mode},
-      pose_{kFoldedPose},
+      pose_{options_.folded},
       button_remaining_s_{button_span(mode_)} {}
 
 void BenchArm::advance_to(Instant time) noexcept {
@@ -152,7 +148,7 @@ double BenchArm::button_span(ArmMode mode) const noexcept {
 }
 
 const Pose& BenchArm::button_goal() const noexcept {
-  return mode_ == ArmMode::kReadyToFolded ? kFoldedPose : kReadyPose;
+  return mode_ == ArmMode::kReadyToFolded ? options_.folded : options_.ready;
 }
 
 bool BenchArm::is_button_moving() const noexcept {
@@ -175,18 +171,19 @@ void BenchArm::finish_button() noexcept {
   is_home_held_ = false;
 }
 
-/// Signs as in the recordings, where x and y go the other way than on a real arm.
 void BenchArm::steer(double elapsed) noexcept {
-  const auto rate = [](float axis) { return std::clamp(double{axis}, -1.0, 1.0); };
-  const auto move = [&](float Pose::* component, double speed) {
-    pose_.*component = static_cast<float>(pose_.*component + speed * elapsed);
+  const auto move = [&](float Pose::* component, float axis, double speed, double sign) {
+    const double rate = sign * speed * std::clamp(double{axis}, -1.0, 1.0);
+    pose_.*component = static_cast<float>(pose_.*component + rate * elapsed);
   };
-  move(&Pose::x, -kStickLinear * rate(stick_.translation[0]));
-  move(&Pose::y, -kStickLinear * rate(stick_.translation[1]));
-  move(&Pose::z, kStickLinear * rate(stick_.translation[2]));
-  move(&Pose::yaw, kStickAngular * rate(stick_.wrist[0]));
-  move(&Pose::pitch, kStickAngular * rate(stick_.wrist[1]));
-  move(&Pose::roll, kStickAngular * rate(stick_.wrist[2]));
+  const auto& [translation, wrist] = stick_;
+  const auto& signs = options_.stick_signs;
+  move(&Pose::x, translation[0], options_.stick_linear_m_s, signs[0]);
+  move(&Pose::y, translation[1], options_.stick_linear_m_s, signs[1]);
+  move(&Pose::z, translation[2], options_.stick_linear_m_s, signs[2]);
+  move(&Pose::yaw, wrist[0], options_.stick_rotation_rad_s, signs[3]);
+  move(&Pose::pitch, wrist[1], options_.stick_rotation_rad_s, signs[4]);
+  move(&Pose::roll, wrist[2], options_.stick_rotation_rad_s, signs[5]);
   pose_.x = std::clamp(pose_.x, -0.79F, 0.79F);
   pose_.y = std::clamp(pose_.y, -0.84F, 0.84F);
   pose_.z = std::clamp(pose_.z, 0.F, 1.14F);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "emulators/kinovazed/plant.hpp"
@@ -18,6 +19,13 @@ struct BenchOptions {
   double linear_m_s = 0.5;
   double rotation_rad_s = 2.0;
   double position_noise = 0.0001;
+  Pose ready{0.21F, -0.26F, 0.50F, 1.65F, 1.10F, 0.13F};
+  Pose folded{0.05F, -0.03F, 0.30F, 1.60F, 0.20F, 0.05F};
+  double stick_linear_m_s = 0.2;  ///< at full deflection
+  double stick_rotation_rad_s = 0.4;
+  /// Where a positive axis leads: x, y, z, yaw, pitch, roll. x and y of the recordings go the other
+  /// way than on a real arm.
+  std::array<double, 6> stick_signs{-1, -1, 1, 1, 1, 1};
 };
 
 /// The simulated arm of the recordings (captures/kinovazed/README.md), which moves in straight
@@ -47,8 +55,13 @@ class BenchArm {
   void set_mode(ArmMode mode) noexcept;
   void set_current_sum(float ampere) noexcept { current_sum_ = ampere; }
 
+  void set_pose(const Pose& pose) noexcept { pose_ = pose; }
+
   /// Where it is, without noise.
   [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
+  [[nodiscard]] bool is_moving() const noexcept {
+    return has_control_ && (has_target_ || is_button_moving());
+  }
 
  private:
   [[nodiscard]] double button_span(ArmMode mode) const noexcept;

@@ -25,6 +25,8 @@ using namespace std::chrono_literals;
 constexpr Duration kPatience = 2s;
 /// What the emulator sends that shortly before the end may come behind the end on a real machine.
 constexpr Duration kGrace = 60ms;
+/// Longer sessions would only cost time.
+constexpr Duration kLongest = 1h;
 constexpr std::string_view kTerminateNote = "server process is asked to terminate";
 
 struct Recording {
@@ -82,7 +84,7 @@ Outcome<Recording> read_header(const Trace& trace) {
   if (!reader.wrong_key().empty()) {
     return wrong(trace, 1, fmt::format("\"arm.{}\" is out of range", reader.wrong_key()));
   }
-  if (!since.is_number() || std::abs(since.get<double>()) > 1e9) {
+  if (!since.is_number() || std::abs(since.get<double>()) > 3.6e6) {
     return wrong(trace, 1, "\"listening_since_ms\" is out of range");
   }
   if (!after.is_string() || !state.is_string()) {
@@ -354,6 +356,9 @@ class Player {
 Outcome<Replayed> replay(const Trace& trace) {
   const auto recording = read_header(trace);
   if (!recording) return tl::unexpected{recording.error()};
+  if (!trace.events.empty() && trace.events.back().time > at(kLongest)) {
+    return wrong(trace, trace.events.back().line, "it is longer than an hour");
+  }
   Player player{trace, *recording};
   if (auto failure = player.play()) return tl::unexpected{*std::move(failure)};
   return player.result(*recording);
