@@ -20,9 +20,11 @@ struct TraceEvent {
   Instant time{};
   std::string dir;  ///< `to_device`, `from_device`, ...: what happened
   std::vector<std::byte> bytes;
-  std::uint32_t id{};  ///< of a CAN frame
+  std::uint32_t id{};  ///< of a CAN frame, or the number of a connection
   std::string name;    ///< of an input
   std::int64_t value{};
+  std::string
+      json;  ///< the whole line, if it has no bytes: what else it says depends on the device
 };
 
 /// A recording as text: JSON Lines, first a header, then events in order of time.
