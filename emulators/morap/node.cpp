@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "emulators/morap/tuner.hpp"
@@ -88,7 +87,7 @@ void Node::restart(Instant time) noexcept {
   ram_.position_set = setup_.eeprom.position;
   ram_.speed_set = setup_.eeprom.speed;
   tick_period_ = tick_period(kIdleRate);
-  next_tick_ = is_on_bus_ ? now + tick_period_ : std::numeric_limits<Cycles>::max();
+  next_tick_ = is_on_bus_ ? now + tick_period_ : kNever;
   set_encoder_count(0);
   connect_plant();
 }

@@ -61,6 +61,8 @@ class Node {
 
   /// Does everything up to and including `time`.
   void advance_to(Instant time) noexcept;
+  /// The first time at which `advance_to` does one more tick; never if it has no clock running.
+  [[nodiscard]] Instant next_tick() const noexcept { return instant_of(next_tick_); }
   /// Power fails and comes back: memory is lost, the EEPROM and the shaft stay as they are.
   void restart(Instant time) noexcept;
 

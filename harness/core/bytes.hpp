@@ -64,9 +64,11 @@ constexpr void store_u16_le(std::span<std::byte, 2> out, std::uint16_t value) no
 /// Reads a single-precision number, least significant byte first. Every bit survives, those of a
 /// NaN too.
 [[nodiscard]] constexpr float load_f32_le(std::span<const std::byte, 4> in) noexcept {
-  std::uint32_t bits = 0;
-  for (std::size_t i = 4; i-- > 0;) bits = bits << 8 | std::to_integer<std::uint32_t>(in[i]);
-  return std::bit_cast<float>(bits);
+  // Written out, so that compilers see that it is one move.
+  return std::bit_cast<float>(std::to_integer<std::uint32_t>(in[0]) |
+                              std::to_integer<std::uint32_t>(in[1]) << 8 |
+                              std::to_integer<std::uint32_t>(in[2]) << 16 |
+                              std::to_integer<std::uint32_t>(in[3]) << 24);
 }
 
 /// Writes the bits of a single-precision number, least significant byte first.

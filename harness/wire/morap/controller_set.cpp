@@ -10,12 +10,15 @@ namespace {
 constexpr std::size_t kFloatSize = 4;
 constexpr std::array kFilters{&ControllerSet::d, &ControllerSet::c, &ControllerSet::f};
 
-void append(SetBytes& out, const Coefficients& filter) noexcept {
+/// Writes a filter; what is left of `out`.
+std::span<std::byte> put(std::span<std::byte> out, const Coefficients& filter) noexcept {
   assert(filter.count <= kMostCoefficients);
-  out.push_back(std::byte{filter.count});
-  for (std::size_t i = 0; i < filter.count; ++i) {
-    store_f32_le(out.extend<kFloatSize>(), filter.values[i]);
+  const std::size_t count = filter.count;
+  out[0] = static_cast<std::byte>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    store_f32_le(slice<kFloatSize>(out, 1 + kFloatSize * i), filter.values[i]);
   }
+  return out.subspan(1 + kFloatSize * count);
 }
 
 /// Takes bytes off the front of a set, as long as there are any.
@@ -43,9 +46,7 @@ constexpr std::size_t kHeadSize = 3;
 }  // namespace
 
 std::size_t wire_size(const ControllerSet& set) noexcept {
-  std::size_t size = kSmallestSetSize;
-  for (const auto filter : kFilters) size += kFloatSize * (set.*filter).count;
-  return size;
+  return kSmallestSetSize + kFloatSize * (std::size_t{set.d.count} + set.c.count + set.f.count);
 }
 
 std::uint8_t checksum(Bytes payload) noexcept {
@@ -58,37 +59,48 @@ std::uint8_t checksum(Bytes payload) noexcept {
 
 SetBytes encode(const ControllerSet& set) noexcept {
   SetBytes out;
-  out.push_back(static_cast<std::byte>(set.kind));
-  store_u16_le(out.extend<2>(), set.rate_hz);
-  for (const auto filter : kFilters) append(out, set.*filter);
-  store_f32_le(out.extend<kFloatSize>(), set.integral);
-  out.push_back(std::byte{checksum(out)});
+  encode_into(out.extend(wire_size(set)), set);
   return out;
 }
 
-std::variant<ControllerSet, SetFault> decode_set(Bytes in) noexcept {
+void encode_into(std::span<std::byte> out, const ControllerSet& set) noexcept {
+  out[0] = static_cast<std::byte>(set.kind);
+  store_u16_le(slice<2>(out, 1), set.rate_hz);
+  auto rest = out.subspan(kHeadSize);
+  for (const auto filter : kFilters) rest = put(rest, set.*filter);
+  store_f32_le(slice<kFloatSize>(rest, 0), set.integral);
+  out.back() = std::byte{checksum(out.first(out.size() - 1))};
+}
+
+std::optional<SetFault> decode_into(ControllerSet& out, Bytes in) noexcept {
   using enum SetFault::Kind;
   const SetFault cut_short{kTooShort, in.size()};
   SetReader reader{in};
-  ControllerSet set;
   if (!reader.has(kHeadSize)) return cut_short;
-  set.kind = ControllerKind{reader.take_byte()};
-  set.rate_hz = load_u16_le(reader.take<2>());
+  out.kind = ControllerKind{reader.take_byte()};
+  out.rate_hz = load_u16_le(reader.take<2>());
   for (const auto member : kFilters) {
-    auto& filter = set.*member;
+    auto& filter = out.*member;
     if (!reader.has(1)) return cut_short;
-    filter.count = reader.take_byte();
-    if (filter.count > kMostCoefficients) return SetFault{kCountAboveFour, reader.place() - 1};
-    if (!reader.has(kFloatSize * filter.count)) return cut_short;
-    for (std::size_t i = 0; i < filter.count; ++i) {
+    const auto count = reader.take_byte();
+    filter.count = count;
+    if (count > kMostCoefficients) return SetFault{kCountAboveFour, reader.place() - 1};
+    if (!reader.has(kFloatSize * count)) return cut_short;
+    for (std::size_t i = 0; i < count; ++i) {
       filter.values[i] = load_f32_le(reader.take<kFloatSize>());
     }
   }
   if (!reader.has(kFloatSize + 1)) return cut_short;
-  set.integral = load_f32_le(reader.take<kFloatSize>());
+  out.integral = load_f32_le(reader.take<kFloatSize>());
   const auto payload = in.first(reader.place());
   if (reader.take_byte() != checksum(payload)) return SetFault{kWrongChecksum, payload.size()};
-  return set;
+  return std::nullopt;
+}
+
+std::variant<ControllerSet, SetFault> decode_set(Bytes in) noexcept {
+  std::variant<ControllerSet, SetFault> result;
+  if (const auto fault = decode_into(*std::get_if<ControllerSet>(&result), in)) result = *fault;
+  return result;
 }
 
 }  // namespace armjig::morap

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <variant>
 
 #include "harness/core/bytes.hpp"
@@ -49,6 +51,9 @@ using SetBytes = BoundedBytes<kLargestSetSize>;
 /// The set as it is sent and read back, with its checksum. Requires counts of at most four.
 [[nodiscard]] SetBytes encode(const ControllerSet& set) noexcept;
 
+/// The same into `out`, which is `wire_size(set)` long.
+void encode_into(std::span<std::byte> out, const ControllerSet& set) noexcept;
+
 /// Why bytes are not a set.
 struct SetFault {
   enum class Kind : std::uint8_t { kTooShort, kCountAboveFour, kWrongChecksum };
@@ -61,5 +66,8 @@ struct SetFault {
 /// Reads the set at the beginning of `in`; bytes behind its checksum are left alone. Judges as the
 /// node does: a count as soon as it comes, the checksum last.
 [[nodiscard]] std::variant<ControllerSet, SetFault> decode_set(Bytes in) noexcept;
+
+/// The same into `out`, which is half read after a fault.
+[[nodiscard]] std::optional<SetFault> decode_into(ControllerSet& out, Bytes in) noexcept;
 
 }  // namespace armjig::morap

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/wire/morap/message.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cassert>
+#include <optional>
 
 namespace armjig::morap {
 namespace {
@@ -51,35 +50,67 @@ constexpr std::array kReadings{
     ReadInfo{kReadSpeedSet, "speed_set", ReadKind::kControllerSet, "", "active", false},
 };
 
-template <auto key, class Table>
-auto find_in(const Table& table, CommandId id) noexcept {
-  const auto found = std::ranges::find(table, id, key);
-  return found == table.end() ? nullptr : &*found;
-}
+constexpr std::uint8_t kNowhere = 0xFF;
 
-/// A float command, or too few bytes for one.
-std::variant<DecodedCommand, CommandFault> decode_float_command(Bytes data) noexcept {
-  if (data.size() < kFloatCommandSize) return CommandFault{CommandFault::Kind::kTooShort};
-  const CommandId id{std::to_integer<std::uint8_t>(data[0])};
-  return DecodedCommand{{id, load_f32_le(slice<4>(data, 1))}, kFloatCommandSize};
-}
-
-std::variant<DecodedCommand, CommandFault> decode_program(Bytes data) noexcept {
-  const auto decoded = decode_set(data.subspan(1));
-  if (const auto* set = std::get_if<ControllerSet>(&decoded)) {
-    return DecodedCommand{{kProgram, *set}, 1 + wire_size(*set)};
+/// Where in a table the row of each identifier is.
+template <class Table>
+constexpr auto places_in(const Table& table, auto key) {
+  std::array<std::uint8_t, 256> places{};
+  places.fill(kNowhere);
+  for (std::uint8_t i = 0; i < table.size(); ++i) {
+    places[static_cast<std::uint8_t>(table[i].*key)] = i;
   }
-  const auto fault = std::get<SetFault>(decoded);
-  const bool is_short = fault.kind == SetFault::Kind::kTooShort;
-  return CommandFault{is_short ? CommandFault::Kind::kTooShort : CommandFault::Kind::kBadSet,
-                      fault};
+  return places;
+}
+constexpr auto kCommandPlaces = places_in(kCommands, &CommandInfo::id);
+constexpr auto kReadingPlaces = places_in(kReadings, &ReadInfo::selector);
+
+/// Each of these reads what follows the identifier of `data`; nullopt if there is no fault.
+std::optional<CommandFault> take_float(Bytes data, DecodedCommand& out) noexcept {
+  if (data.size() < kFloatCommandSize) return CommandFault{CommandFault::Kind::kTooShort};
+  out.command.payload = load_f32_le(slice<4>(data, 1));
+  out.size = kFloatCommandSize;
+  return std::nullopt;
 }
 
-std::variant<DecodedCommand, CommandFault> decode_tune(Bytes data) noexcept {
+std::optional<CommandFault> take_set(Bytes data, DecodedCommand& out) noexcept {
+  auto& set = out.command.payload.emplace<ControllerSet>();
+  const auto fault = decode_into(set, data.subspan(1));
+  out.size = 1 + wire_size(set);
+  if (!fault) return std::nullopt;
+  const bool is_short = fault->kind == SetFault::Kind::kTooShort;
+  return CommandFault{is_short ? CommandFault::Kind::kTooShort : CommandFault::Kind::kBadSet,
+                      *fault};
+}
+
+std::optional<CommandFault> take_tuning(Bytes data, DecodedCommand& out) noexcept {
   if (data.size() < kTuneCommandSize) return CommandFault{CommandFault::Kind::kTooShort};
-  const TuneRequest request{TuneKind{std::to_integer<std::uint8_t>(data[1])},
-                            load_f32_le(slice<4>(data, 2)), load_f32_le(slice<4>(data, 6))};
-  return DecodedCommand{{kTune, request}, kTuneCommandSize};
+  out.command.payload = TuneRequest{TuneKind{std::to_integer<std::uint8_t>(data[1])},
+                                    load_f32_le(slice<4>(data, 2)), load_f32_le(slice<4>(data, 6))};
+  out.size = kTuneCommandSize;
+  return std::nullopt;
+}
+
+std::optional<CommandFault> take_command(Bytes data, DecodedCommand& out) noexcept {
+  if (data.empty()) return CommandFault{CommandFault::Kind::kEmpty};
+  out.command.id = CommandId{std::to_integer<std::uint8_t>(data[0])};
+  out.size = 1;
+  const auto* info = find_command(out.command.id);
+  if (info == nullptr) {
+    if (find_reading(out.command.id) != nullptr) return std::nullopt;
+    return CommandFault{CommandFault::Kind::kUnknownId};
+  }
+  switch (info->payload) {
+    case Payload::kFloat:
+      return take_float(data, out);
+    case Payload::kControllerSet:
+      return take_set(data, out);
+    case Payload::kTuneRequest:
+      return take_tuning(data, out);
+    case Payload::kNone:
+      break;
+  }
+  return std::nullopt;
 }
 
 /// Appends what follows the identifier.
@@ -89,8 +120,7 @@ struct PayloadWriter {
   void operator()(std::monostate /*none*/) const noexcept {}
   void operator()(float value) const noexcept { store_f32_le(out.extend<4>(), value); }
   void operator()(const ControllerSet& set) const noexcept {
-    const auto bytes = encode(set);
-    std::ranges::copy(bytes.view(), out.extend(bytes.size()).begin());
+    encode_into(out.extend(wire_size(set)), set);
   }
   void operator()(const TuneRequest& request) const noexcept {
     out.push_back(static_cast<std::byte>(request.kind));
@@ -105,10 +135,12 @@ std::span<const CommandInfo> commands() noexcept { return kCommands; }
 std::span<const ReadInfo> readings() noexcept { return kReadings; }
 
 const CommandInfo* find_command(CommandId id) noexcept {
-  return find_in<&CommandInfo::id>(kCommands, id);
+  const auto place = kCommandPlaces[static_cast<std::uint8_t>(id)];
+  return place == kNowhere ? nullptr : &kCommands[place];
 }
 const ReadInfo* find_reading(CommandId selector) noexcept {
-  return find_in<&ReadInfo::selector>(kReadings, selector);
+  const auto place = kReadingPlaces[static_cast<std::uint8_t>(selector)];
+  return place == kNowhere ? nullptr : &kReadings[place];
 }
 
 WriteBytes encode(const Command& command) noexcept {
@@ -119,22 +151,10 @@ WriteBytes encode(const Command& command) noexcept {
 }
 
 std::variant<DecodedCommand, CommandFault> decode_command(Bytes data) noexcept {
-  if (data.empty()) return CommandFault{CommandFault::Kind::kEmpty};
-  const CommandId id{std::to_integer<std::uint8_t>(data[0])};
-  if (find_reading(id) != nullptr) return DecodedCommand{{id, {}}, 1};
-  const auto* info = find_command(id);
-  if (info == nullptr) return CommandFault{CommandFault::Kind::kUnknownId};
-  switch (info->payload) {
-    case Payload::kFloat:
-      return decode_float_command(data);
-    case Payload::kControllerSet:
-      return decode_program(data);
-    case Payload::kTuneRequest:
-      return decode_tune(data);
-    case Payload::kNone:
-      break;
-  }
-  return DecodedCommand{{id, {}}, 1};
+  std::variant<DecodedCommand, CommandFault> result;
+  const auto fault = take_command(data, *std::get_if<DecodedCommand>(&result));
+  if (fault) result = *fault;
+  return result;
 }
 
 FloatBytes encode(float value) noexcept {
