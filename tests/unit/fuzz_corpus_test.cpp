@@ -14,6 +14,9 @@
 
 // Each target under a name of its own.
 // NOLINTBEGIN(bugprone-suspicious-include)
+#define LLVMFuzzerTestOneInput fuzz_morap_wire
+#include "fuzz/morap_wire.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_board
 #include "fuzz/parol6_board.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -50,6 +53,8 @@ void run_corpus(Target target, const char* name) {
     target(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
   }
 }
+
+TEST(FuzzCorpus, MorapMessagesComeBack) { run_corpus(fuzz_morap_wire, "morap_wire"); }
 
 TEST(FuzzCorpus, CuttingTheStreamDifferentlyChangesNothing) {
   run_corpus(fuzz_parol6_splitter, "parol6_splitter");
