@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <cstdint>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolverpos_lma.hpp>
@@ -9,7 +8,6 @@
 #include <vector>
 
 #include "harness/arm/models.hpp"
-#include "harness/arm/numeric_ik.hpp"
 #include "harness/arm/spherical_wrist.hpp"
 #include "harness/motion/parol6/conversion.hpp"
 #include "harness/motion/parol6/planner.hpp"
@@ -68,19 +66,6 @@ void kdl_lma_one_solution(benchmark::State& state) {
   state.counters["found"] = static_cast<double>(found) / static_cast<double>(i);
 }
 BENCHMARK(kdl_lma_one_solution);
-
-void jaco_numeric_ik(benchmark::State& state) {
-  const auto arm = arm::jaco(arm::JacoVariant::kJaco2Curved);
-  std::vector<arm::Pose> poses;
-  for (const auto& joints : postures()) poses.push_back(forward(arm, joints));
-  const auto seed = standby_angles();
-  std::size_t i = 0;
-  for (auto _ : state) {
-    auto answer = numeric_ik(arm, poses[i++ % poses.size()], seed);
-    benchmark::DoNotOptimize(answer);
-  }
-}
-BENCHMARK(jaco_numeric_ik);
 
 /// Six joints, 4 s at 100 Hz, checks included.
 void plan_joint_move(benchmark::State& state) {

@@ -24,10 +24,19 @@ inline constexpr double kFastestToolJog = 0.06;   // m/s
 inline constexpr double kSlowestToolTurn = 0.7;   // deg/s
 inline constexpr double kFastestToolTurn = 25;    // deg/s
 
-/// The joints' speeds for the next frame, for `Command::kJog`, from where the joints are now.
-/// Refused if the tool cannot move that way there (`kNotConverged`), a joint would have to be
-/// faster than it jogs (`kTooFast`), or it is at its limit and would go beyond it (`kOutOfLimits`).
-[[nodiscard]] tl::expected<JointSpeeds, Refusal> jog_speeds(const CartesianJog& jog,
-                                                            const JointSteps& now);
+/// Turns what the tool shall do into what the joints do. Nothing of it is on the heap.
+class CartesianJogger {
+ public:
+  CartesianJogger();
+
+  /// The joints' speeds for the next frame, for `Command::kJog`, from where the joints are now.
+  /// Refused if the tool cannot move that way there (`kSingular`), a joint would have to be
+  /// faster than it jogs (`kTooFast`), or it is at its limit and would go beyond (`kOutOfLimits`).
+  [[nodiscard]] tl::expected<JointSpeeds, Refusal> speeds(const CartesianJog& jog,
+                                                          const JointSteps& now) const noexcept;
+
+ private:
+  arm::Arm arm_;
+};
 
 }  // namespace armjig::parol6

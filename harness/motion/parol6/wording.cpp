@@ -40,6 +40,7 @@ std::string describe(const Refusal& refusal) {
     case Refusal::Reason::kUnreachable:
       return fmt::format("no posture reaches the pose at {:.2f} s", time);
     case Refusal::Reason::kSingular:
+      if (!joint) return "near a singularity the tool cannot move that way";
       return fmt::format("near a singularity {} would leap at {:.2f} s", name_of(refusal), time);
     case Refusal::Reason::kNotConverged:
       return fmt::format("the commander's inverse kinematics does not converge at {:.2f} s", time);
