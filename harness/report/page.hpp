@@ -206,7 +206,7 @@ inline constexpr std::string_view kScript = R"js(
               -(z * Math.cos(tilt) + depth * Math.sin(tilt))].map(Math.round);
     };
     const make = (name, kind) => {
-      const element = document.createElementNS('http://www.w3.org/2000/svg', name);
+      const element = document.createElementNS(svg.namespaceURI, name);
       element.setAttribute('class', kind);
       return svg.appendChild(element);
     };
@@ -311,7 +311,7 @@ inline constexpr std::string_view kScript = R"js(
 /// The policy lets no other script run, whatever a device wrote into the report.
 /// tests/integration/report_page_test.py fails if it does not fit the script, and says what would.
 inline constexpr std::string_view kScriptHash =
-    "sha256-bAPAZ8qNoy1aXHfihbsU85gOPOB7o8HpPIwjhbyQGaI=";
+    "sha256-UNes29pIrcmK5x+ksTSsl8dk6SFgwwgiqxqkphPLevs=";
 
 inline constexpr const char* kTemplate = R"html(<!doctype html>
 <html lang="en">

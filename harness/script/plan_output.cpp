@@ -203,8 +203,8 @@ Table moves_table(const Program& program, const Schedule& schedule) {
     table.rows.push_back(
         {std::to_string(statement.place.line), to_text(statement.command, program.dialect),
          std::string{law_of(move.plan)}, fmt::format("{:.2f} s", time_of(move.first_frame)),
-         fmt::format("{:.2f} s", move.plan.duration), fmt::format("j{}", leading + 1),
-         fmt::format("{:.2f} deg", way), fmt::format("j{}", peak.joint + 1),
+         fmt::format("{:.2f} s", move.plan.duration), fmt::format("j{}", leader.joint + 1),
+         fmt::format("{:.2f} deg", leader.degrees), fmt::format("j{}", peak.joint + 1),
          fmt::format("{:.0f} steps/s", peak.speed), fmt::format("{:.0f} %", 100 * peak.share)});
   }
   return table;

@@ -81,10 +81,10 @@ TEST(Experiment, SpeedAndPositionEndsOnTheCommandedStep) {
 
 TEST(Experiment, SpeedOnlyMisses) {
   // Steps beside the goal, of 177.8 in a degree. They are the emulated board's, to the step.
-  EXPECT_EQ(end_of_joint6("trap, speed", Host::kIdeal) - kGoal, 0);
-  EXPECT_EQ(end_of_joint6("poly, speed", Host::kIdeal) - kGoal, 0);
-  EXPECT_EQ(end_of_joint6("trap, speed", Host::kJitters) - kGoal, 0);
-  EXPECT_EQ(end_of_joint6("poly, speed", Host::kJitters) - kGoal, 0);
+  EXPECT_EQ(end_of_joint6("trap, speed", Host::kIdeal) - kGoal, 628);
+  EXPECT_EQ(end_of_joint6("poly, speed", Host::kIdeal) - kGoal, 493);
+  EXPECT_EQ(end_of_joint6("trap, speed", Host::kJitters) - kGoal, 464);
+  EXPECT_EQ(end_of_joint6("poly, speed", Host::kJitters) - kGoal, 307);
 }
 
 }  // namespace

@@ -19,7 +19,9 @@
 #include "harness/drive/parol6/drive_loop.hpp"
 #include "harness/link/memory_stream.hpp"
 #include "harness/motion/parol6/conversion.hpp"
+#include "harness/script/run_output.hpp"
 #include "harness/script/schedule.hpp"
+#include "tests/unit/report/validity.hpp"
 #include "tests/unit/script/programs.hpp"
 
 namespace armjig::script {
@@ -202,18 +204,46 @@ TEST(ProgramRun, EndsWithTheEmergencyStop) {
   EXPECT_THAT(ending->text, HasSubstr("emergency stop"));
 }
 
+/// That the next frame asks for.
+int gripper_position(Jig& jig) {
+  const auto frame = jig.drive.tick(jig.port.now());
+  return parol6::decode_command(parol6::body_of(frame)).gripper.position;
+}
+
 TEST(ProgramRun, LeavesTheGripperAloneUntilItIsNamed) {
   const auto program =
       test::program_of("Delay(0.05)\nGripper(200, 90, 400)\nDelay(0.2)", Dialect::kDocumented);
   Jig jig;
   ProgramRun run{program, {}};
   ASSERT_TRUE(jig.go_through(run)->is_success);
-  EXPECT_EQ(jig.drive.tick(jig.port.now())[46], std::byte{200});  // position, low byte
+  EXPECT_EQ(gripper_position(jig), 200);
   const auto quiet = test::program_of("Delay(0.05)", Dialect::kDocumented);
   Jig other;
   ProgramRun quiet_run{quiet, {}};
   ASSERT_TRUE(other.go_through(quiet_run)->is_success);
-  EXPECT_EQ(other.drive.tick(other.port.now())[46], std::byte{0});
+  EXPECT_EQ(gripper_position(other), 0);
+}
+
+TEST(ProgramRun, ResultsKeepToTheirSchemaAndPlotsToWhatMoved) {
+  const auto program =
+      test::program_of("MoveJoint(10, 0, 0, 0, 0, 0, t=1)\nMoveJoint(0, 0, 0, 0, 0, 0, t=1, speed)",
+                       Dialect::kDocumented);
+  Jig jig;
+  ProgramRun run{program, {.planner = {.limits = parol6::LimitCheck::kIgnored}}};
+  run.keep_samples(1000);
+  ASSERT_TRUE(jig.go_through(run)->is_success);
+  const auto json = to_json(program, run,
+                            {.file = "a.rbt",
+                             .target = "emulated:",
+                             .ran_to_end = true,
+                             .position = jig.drive.telemetry()->position,
+                             .link = jig.drive.statistics()});
+  EXPECT_TRUE(armjig::test::is_valid_json(json, "docs/schemas/run.schema.json"));
+  EXPECT_EQ(results_table(program, run).rows.size(), 2U);
+  const auto plots = run_plots(run);
+  ASSERT_EQ(plots.position.series.size(), 1U);
+  EXPECT_EQ(plots.error.series.front().name, "j1");
+  EXPECT_NEAR(plots.position.series.front().points[99].y, 10, 0.1);
 }
 
 TEST(ProgramRun, NamesWhatItNeedsLeaveFor) {

@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -202,6 +204,41 @@ TEST(CommanderSchedule, P7DefaultsOfSpeedAndAcceleration) {
     EXPECT_EQ(move.at(188, 1).speed, -2980) << line;
     EXPECT_EQ(move.at(376, 1), (Told{0, -89})) << line;
   }
+}
+
+TEST(CommanderSchedule, P9ALineFromStandby) {
+  const CommanderMove move{"MoveCart(0.0,263.23,161.241,-90.0,0.0,-89.499)"};
+  struct Row {
+    std::size_t k{};
+    std::array<int, 6> positions{};
+    std::array<int, 6> speeds{};
+  };
+  for (const auto& [k, positions, speeds] :
+       {Row{1, {10239, -32003, 57902, 0, 0, 31989}, {}},
+        Row{60, {10239, -32033, 57756, 0, 25, 31989}, {0, -196, -946, 0, 172, 0}},
+        Row{180, {10239, -32448, 50917, 0, 1472, 31994}, {0, 1054, -7264, 0, 1839, 7}},
+        Row{300, {10239, -30302, 46251, 0, 2950, 31999}, {0, 415, -435, 0, 181, 0}},
+        Row{359, {10239, -30242, 46189, 0, 2976, 31999}, {}}}) {
+    for (std::size_t j = 1; j <= 6; ++j) {
+      EXPECT_NEAR(move.at(k, j).position, positions[j - 1], 2) << k << " j" << j;
+      EXPECT_NEAR(move.at(k, j).speed, speeds[j - 1], 2 + 0.03 * std::abs(speeds[j - 1]))
+          << k << " j" << j;
+    }
+  }
+}
+
+TEST(CommanderSchedule, P10NumbersOfSamples) {
+  struct Count {
+    std::string_view time;
+    std::size_t samples{};
+  };
+  for (const auto& [time, samples] :
+       {Count{"0.29", 28}, Count{"0.57", 56}, Count{"2.3", 229}, Count{"1.1", 110}}) {
+    const CommanderMove move{fmt::format("MoveJoint(89,-90,180,0,0,180,t={})", time)};
+    EXPECT_EQ(move.schedule().moves.at(0).plan.set_points.size(), samples - 1) << time;
+  }
+  const CommanderMove line{"MoveCart(0.0,263.23,161.241,-90.0,0.0,-89.499)"};
+  EXPECT_EQ(line.schedule().moves.at(0).plan.set_points.size(), 359U);
 }
 
 TEST(CommanderSchedule, SpeedOnlyDiffersInTheCommandAlone) {
