@@ -20,6 +20,8 @@ namespace armjig::parol6 {
 [[nodiscard]] std::span<const Requirement> demo_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> gripper_requirements() noexcept;
 
+[[nodiscard]] std::span<const Requirement> between_requirements() noexcept;
+
 [[nodiscard]] std::span<const Case> frame_cases() noexcept;
 [[nodiscard]] std::span<const Case> receive_cases() noexcept;
 [[nodiscard]] std::span<const Case> telemetry_cases() noexcept;
@@ -31,5 +33,6 @@ namespace armjig::parol6 {
 [[nodiscard]] std::span<const Case> home_run_cases() noexcept;
 [[nodiscard]] std::span<const Case> demo_cases() noexcept;
 [[nodiscard]] std::span<const Case> gripper_cases() noexcept;
+[[nodiscard]] std::span<const Case> between_cases() noexcept;
 
 }  // namespace armjig::parol6

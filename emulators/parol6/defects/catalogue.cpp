@@ -66,7 +66,7 @@ constexpr std::array kHomingFigures{
 using SpoilDemo = void (*)(DemoParameters& figures);
 constexpr std::array kDemoFigures{
     Named<SpoilDemo>{"maximum", [](DemoParameters& f) { f.max_speed_and_acceleration *= 2; }},
-    Named<SpoilDemo>{"out", [](DemoParameters& f) { f.out.value += 1; }},
+    Named<SpoilDemo>{"out", [](DemoParameters& f) { f.out.value += 100; }},
     Named<SpoilDemo>{"back", [](DemoParameters& f) { f.back.value += 1; }}};
 
 template <class Table>
@@ -165,11 +165,19 @@ bool add_timer(std::string_view text, ArmOptions& arm, Defects& /*defects*/) {
   return text == "15" || text == "8";
 }
 
+bool add_check(std::string_view text, ArmOptions& arm, Defects& /*defects*/) {
+  constexpr std::array kPolicies{Named<CheckPolicy>{"d4", CheckPolicy::kBoardOnly},
+                                 Named<CheckPolicy>{"d4-or-e4", CheckPolicy::kBoardOrHost}};
+  const auto* const found = find_named(kPolicies, text);
+  if (found != nullptr) arm.profile.check = found->meaning;
+  return found != nullptr;
+}
+
 constexpr std::array kWords{Named<Add>{"row", add_row},         Named<Add>{"deaf", add_deaf},
                             Named<Add>{"ears", add_ears},       Named<Add>{"quirk", add_quirk},
                             Named<Add>{"profile", add_profile}, Named<Add>{"homing", add_homing},
                             Named<Add>{"demo", add_demo},       Named<Add>{"plant", add_plant},
-                            Named<Add>{"timer", add_timer}};
+                            Named<Add>{"timer", add_timer},     Named<Add>{"check", add_check}};
 
 // The list of all.
 
@@ -315,6 +323,7 @@ std::vector<NamedFault> all_faults() {
   for (int joint = 1; joint <= 6; ++joint) {
     list.add("plant:mirrored.j" + std::to_string(joint), "Homing");
   }
+  for (const auto* name : {"check:d4", "check:d4-or-e4"}) list.add(name, "Receiving");
   list.add("timer:15", "Timing");
   list.add("timer:8", "Timing");
   return list.take();

@@ -57,6 +57,7 @@ struct Defects {
 ///     code ears:NAME  quirk:NAME          a defect of reception, a wrong behaviour profile:NAME
 ///     one difference of the profile turned round homing:jN.FIGURE  demo:jN.FIGURE  a wrong figure
 ///     plant:mirrored.jN  timer:BITS  an axis that turns the wrong way; a narrower timer
+///     check:d4  check:d4-or-e4       only these check bytes are taken
 ///
 /// Problems: `kBadValue`.
 [[nodiscard]] Outcome<void> add_fault(std::string_view text, ArmOptions& arm, Defects& defects,

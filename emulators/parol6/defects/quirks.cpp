@@ -159,6 +159,12 @@ void reset_counters(TelemetryFrame& answer, const CommandFrame& asked, QuirkMemo
     answer.position[j] = answer.position[j] - Steps{memory.numbers[j]};
   }
 }
+constexpr Say kCreeps = [](TelemetryFrame& answer, const CommandFrame& asked, QuirkMemory& memory,
+                           const Board&) {
+  if (asked.command != Command::kIdle) memory.is_set = true;
+  if (!memory.is_set) ++memory.numbers[0];
+  answer.position[0] = answer.position[0] + Steps{memory.numbers[0]};
+};
 constexpr Say kStepsLost = [](TelemetryFrame& answer, const CommandFrame&, QuirkMemory&,
                               const Board&) {
   for (auto& position : answer.position) position = position - Steps{position.value / 64};
@@ -250,6 +256,7 @@ constexpr std::array kQuirks{
     says("counters-reset-by-enable", "Commands", reset_counters<Command::kEnable>),
     says("counters-reset-by-disable", "Commands", reset_counters<Command::kDisable>),
     says("counters-reset-by-clear", "Commands", reset_counters<Command::kClearError>),
+    says("creeps-from-power-up", "Commands", kCreeps),
     says("steps-lost", "Telemetry", kStepsLost),
     says("positions-coarse", "Telemetry", kCoarse),
     says("positions-16-bit", "Telemetry", kSixteenBits),
