@@ -38,6 +38,8 @@ constexpr auto kHelp =
     "every frame also says what outputs and gripper shall do. So outputs go off, a gripper goes\n"
     "limp, and a homing that was interrupted goes on.\n"
     "\n"
+    "--reconnect goes on when the device comes back: after a reset, or on its cable again.\n"
+    "\n"
     "Exit codes: 0 telemetry came, 3 none came or the target is gone.";
 
 struct Options {
@@ -47,6 +49,7 @@ struct Options {
   std::optional<std::uint64_t> count;
   std::optional<double> seconds;
   bool json = false;
+  bool reconnects = false;
 
   [[nodiscard]] bool has_end() const { return count.has_value() || seconds.has_value(); }
 };
@@ -188,8 +191,9 @@ const WatchedEntry& entry_of(const std::string& device) {
 }
 
 Exit watch(const Options& options) {
-  const auto how = parse_target_options(options.target);
+  auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
+  if (options.reconnects) how->when_gone = WhenGone::kReopen;
   const bool is_watched_live = has_screen() && !options.has_end();
   if (how->target.is_emulated() && !options.has_end() && !is_watched_live) {
     return report({ErrorCode::kBadValue, options.target.target + " in virtual time never ends",
@@ -242,6 +246,7 @@ void add_watch(CLI::App& app, Action& action) {
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e9))
       ->excludes(count);
+  command->add_flag("--reconnect", options->reconnects, "wait for a device that has gone");
   command->add_flag("--json", options->json, "a JSON object for each message (armjig.telemetry/1)");
   command->callback([options, &action] { action = [options] { return watch(*options); }; });
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "harness/link/reopening_stream.hpp"
 #include "harness/rig/wire_log.hpp"
 #include "harness/wire/dissector.hpp"
 
@@ -17,11 +18,25 @@ auto problem_of_guard(const Target& target, const Error& error) {
   return problem(error.code, target.text, hint);
 }
 
+Outcome<std::unique_ptr<StreamPort>> open_port(const RigOptions& options,
+                                               OpenEmulated open_emulated) {
+  const bool reopens = options.when_gone == WhenGone::kReopen && !options.target.is_emulated();
+  if (reopens && options.permissions.allow_motion()) {
+    return problem(ErrorCode::kBadValue, "--reconnect with --allow",
+                   "an arm that was gone and may move has to be looked at by a person first");
+  }
+  auto port = open_stream(options.target, open_emulated);
+  if (!port || !reopens) return port;
+  return std::make_unique<ReopeningStream>(*std::move(port), [options, open_emulated] {
+    return open_stream(options.target, open_emulated);
+  });
+}
+
 }  // namespace
 
 Outcome<Rig> Rig::open(std::string_view device, const RigOptions& options,
                        OpenEmulated open_emulated) {
-  auto port = open_stream(options.target, open_emulated);
+  auto port = open_port(options, open_emulated);
   if (!port) return tl::unexpected{port.error()};
   Rig rig;
   rig.port_ = *std::move(port);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,12 +16,19 @@
 
 namespace armjig {
 
+/// What to do when the target disappears.
+enum class WhenGone : std::uint8_t {
+  kFail,
+  kReopen,  ///< wait until it is back; only for looking at a real device
+};
+
 /// How a target is opened.
 struct RigOptions {
   Target target;
   Permissions permissions;               ///< what may be written to it, if it is not emulated
   std::optional<Impairment> impairment;  ///< a bad link on purpose
   std::string wire_log;                  ///< a file for every byte on the wire; empty: none
+  WhenGone when_gone{};
 };
 
 /// A device on the jig. From the device outwards: its port, the wire log, the guard unless it is
@@ -30,7 +38,8 @@ struct RigOptions {
 class Rig {
  public:
   /// `device` must be one that this room knows. With permission to move, call it while the program
-  /// has one thread (see `GuardedStream::guard`).
+  /// has one thread (see `GuardedStream::guard`). A target that moves may not be reopened: when it
+  /// has gone, a person has to look at it (`kBadValue`).
   [[nodiscard]] static Outcome<Rig> open(std::string_view device, const RigOptions& options,
                                          OpenEmulated open_emulated);
 

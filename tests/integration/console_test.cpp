@@ -138,7 +138,8 @@ TEST_F(Console, CompletesRemembersAndLeavesOnATerminal) {
   terminal.expect("parol6> ");
   terminal.type("\033[A\033[A\n");  // up, up
   terminal.expect("estop      released");
-  terminal.type("\x04");  // Ctrl-D
+  terminal.expect("parol6> ");  // before, the terminal itself would take Ctrl-D
+  terminal.type("\x04");
   EXPECT_EQ(terminal.wait(), 0);
 }
 
@@ -208,6 +209,19 @@ TEST(Watch, EndsWellOnASignal) {
   }
 }
 
+TEST(Watch, GoesOnWhenTheBoardIsBack) {
+  auto board = std::make_unique<EmulatedBoard>();
+  Program program{{"watch", "parol6", "--target", board->target(), "--reconnect", "--json"}};
+  EXPECT_THAT(program.read_line(), HasSubstr("armjig.telemetry/1"));
+  board.reset();
+  board = std::make_unique<EmulatedBoard>();
+  std::string line = program.read_line();
+  while (line.find("\"lost\":0") != std::string::npos) line = program.read_line();
+  EXPECT_THAT(line, HasSubstr("armjig.telemetry/1")) << "after some frames had no answer";
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(), 0);
+}
+
 TEST(Watch, SaysThatNobodyAnswers) {
   int master = -1;
   int slave = -1;
@@ -233,6 +247,7 @@ TEST(Watch, RefusesWhatItCannotDoInOneLine) {
   expect({"parol6", "--target", "emulated:", "--count", "0"}, "count");
   expect({"parol6", "--target", "emulated:", "--count", "1", "--seconds", "1"}, "excludes");
   expect({"parol6", "--target", "emulated:", "--seconds", "never"}, "seconds");
+  expect({"parol6", "--target", "pty:/dev/null", "--reconnect", "--allow", "move"}, "by a person");
 }
 
 }  // namespace

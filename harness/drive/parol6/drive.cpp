@@ -106,13 +106,6 @@ void Drive::set_gripper(const GripperSetPoint& set_point) noexcept {
   gripper_mode_ = set_point.mode;
 }
 
-void Drive::reconnected() noexcept {
-  splitter_ = Splitter{kTelemetryPayloadSize};
-  count_lost(Instant::max());
-  telemetry_.reset();
-  idle();
-}
-
 Command Drive::due_command(Instant now) {
   if (is_latched_) return Command::kDisable;
   if (!one_shot_) return frame_.command;
@@ -146,6 +139,7 @@ void Drive::receive(Instant now, Bytes bytes) {
     const auto frame = decode_telemetry(body_of(found->bytes.first<kTelemetryFrameSize>()));
     match_answer(now);
     if (std::exchange(is_silent_, false)) {
+      idle();  // the board may have been switched off, or somebody stands beside the arm
       add_event(DriveEvent::Kind::kLinkBack, now, frame.echo);
     }
     check_estop(now, frame);

@@ -39,7 +39,7 @@ struct DriveEvent {
     kEstopPressed,   ///< latched: only disable frames leave from now on
     kEstopReleased,  ///< still latched
     kLinkSilent,     ///< no telemetry for half a second
-    kLinkBack,
+    kLinkBack,      ///< nothing that was under way before the silence goes on by itself
     kTookEffect,    ///< telemetry shows what was asked for
     kNoEffect,      ///< it does not
     kNothingMoved,  ///< the command was accepted, but the joint stands
@@ -82,9 +82,6 @@ class Drive {
 
   /// What came from the board.
   void receive(Instant now, Bytes bytes);
-
-  /// The port was lost and opened again: nothing that was under way goes on by itself.
-  void reconnected() noexcept;
 
   /// The newest telemetry; none before the first.
   [[nodiscard]] const std::optional<TelemetryFrame>& telemetry() const noexcept {

@@ -149,6 +149,19 @@ TEST(Drive, SilenceIsReportedOnceAndSoIsItsEnd) {
   EXPECT_THAT(kinds, testing::ElementsAre(Kind::kLinkSilent, Kind::kLinkBack));
 }
 
+TEST(Drive, WhatWasUnderWayBeforeASilenceDoesNotGoOnAfterIt) {
+  const TelemetryFrame answer{.io = io_flag::kEstopReleased};
+  Drive drive;
+  (void)drive.tick(at(0ms));
+  drive.receive(at(1ms), encode(answer));
+  ASSERT_TRUE(drive.jog(all_joints(1000)));
+  for (int tick = 1; tick < 100; ++tick) (void)drive.tick(at(tick * 10ms));
+  drive.receive(at(1s), encode(answer));
+  const auto frame = decode_command(body_of(drive.tick(at(1s + 10ms))));
+  EXPECT_EQ(frame.command, Command::kIdle);
+  EXPECT_EQ(frame.speed, JointSpeeds{});
+}
+
 TEST(Drive, FramesWithoutAnAnswerAreLostAndOnesWithALateAnswerAreLate) {
   Drive drive;
   const TelemetryFrame answer{.io = io_flag::kEstopReleased};

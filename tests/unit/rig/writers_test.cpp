@@ -104,6 +104,7 @@ const std::vector<Step>& steps() {
         {"harness/link/impaired_bus.cpp", "passes on what it is given"},
         {"harness/link/impaired_stream.cpp", "passes on what it is given"},
         {"harness/link/memory_bus.hpp", "to an emulated device in memory"},
+        {"harness/link/reopening_stream.cpp", "passes on what it is given"},
         {"harness/rig/guard.cpp", "is the guard"},
         {"harness/rig/wire_log.cpp", "passes on what it is given"},
         {"harness/report/report.cpp", "a file"},
@@ -160,15 +161,15 @@ TEST(Writers, TheSearchFindsWhatIsThere) {
 }
 
 TEST(Writers, TheOnlyWayToARigIsTheOneThatGuards) {
-  // Rig::open, step by step: what open_stream made goes into a guard unless it is emulated, and
-  // nothing behind that takes it out again.
+  // Rig::open, step by step: what was opened goes into a guard unless it is emulated, and nothing
+  // behind that takes it out again.
   const auto code = without_comments(read(fs::path{ARMJIG_SOURCE_DIR} / "harness/rig/rig.cpp"));
-  const auto opened = code.find("open_stream(");
+  const auto opened = code.find("port = open_port(");
   const auto asked = code.find("if (!options.target.is_emulated())");
   const auto guarded = code.find("GuardedStream::guard(");
   EXPECT_LT(opened, asked);
   EXPECT_LT(asked, guarded);
-  EXPECT_EQ(code.find("open_stream(", opened + 1), std::string::npos) << "opened twice";
+  EXPECT_EQ(code.find("= open_port(", opened + 1 + sizeof "port "), std::string::npos) << "twice";
 }
 
 }  // namespace
