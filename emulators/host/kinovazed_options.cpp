@@ -2,7 +2,6 @@
 #include "emulators/host/kinovazed_options.hpp"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <fstream>
 #include <iterator>
@@ -58,11 +57,10 @@ Outcome<Duration> parse_call_time(const std::string& where, const std::string& t
 }
 
 Outcome<ObjectiveSet> read_objectives(const std::string& path) {
-  errno = 0;
   std::ifstream in{path, std::ios::binary};
-  if (!in) return problem(error_from_errno(errno).code, path, "check the path");
+  if (!in) return problem(ErrorCode::kBadValue, path, "a readable file of objectives is needed");
   const std::string text{std::istreambuf_iterator<char>{in}, {}};
-  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "check the file");
+  if (in.bad()) return problem(ErrorCode::kBadValue, path, "it cannot be read to its end");
   return parse_objectives(text, path);
 }
 

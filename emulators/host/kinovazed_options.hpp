@@ -11,8 +11,8 @@ namespace armjig::kinovazed {
 
 /// A server as its options describe it: `profile=firmware|documented`, `plant=jaco|bench`,
 /// `objectives=FILE`, `on-death=stay|restart`, `race=reply|event|random`, `call-us=N` (length of a
-/// call to the arm, 0 to 100000). `where` is for messages. Problems: `kUnknownOption`, `kBadValue`,
-/// and those of the file: `kNotFound`, `kNoPermission`, `kCannotRead`, `kMalformed`.
+/// call to the arm, 0 to 100000). `where` is for messages. Problems: `kUnknownOption`,
+/// `kBadValue`, and `kMalformed` for the file.
 [[nodiscard]] Outcome<Server> make_server(const DeviceOptions& options, const std::string& where);
 
 }  // namespace armjig::kinovazed

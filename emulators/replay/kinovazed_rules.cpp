@@ -129,8 +129,8 @@ class Comparator {
 
 }  // namespace
 
-Difference first_difference(const Events& recorded, const Events& actual,
-                            const SessionRules& rules) {
+Difference session_difference(const Events& recorded, const Events& actual,
+                              const SessionRules& rules) {
   std::set<std::uint32_t> connections;
   for (const auto& event : recorded) connections.insert(event.id);
   for (const auto& event : actual) connections.insert(event.id);
@@ -143,8 +143,8 @@ Difference first_difference(const Events& recorded, const Events& actual,
   return comparator.compare(lane_of(recorded, "end", 0), lane_of(actual, "end", 0));
 }
 
-Difference first_difference(const Events& recorded, const Events& actual) {
-  return first_difference(recorded, actual, SessionRules{});
+Difference session_difference(const Events& recorded, const Events& actual) {
+  return session_difference(recorded, actual, SessionRules{});
 }
 
 }  // namespace armjig::kinovazed

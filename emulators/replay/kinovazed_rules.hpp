@@ -33,10 +33,10 @@ struct SessionRules {
 
 /// By `rules`: for each connection messages, ends and refusals with their order and times; values
 /// of beats; and what is left of the server.
-[[nodiscard]] std::optional<TraceDifference> first_difference(
+[[nodiscard]] std::optional<TraceDifference> session_difference(
     const std::vector<TraceEvent>& recorded, const std::vector<TraceEvent>& actual,
     const SessionRules& rules);
-[[nodiscard]] std::optional<TraceDifference> first_difference(
+[[nodiscard]] std::optional<TraceDifference> session_difference(
     const std::vector<TraceEvent>& recorded, const std::vector<TraceEvent>& actual);
 
 }  // namespace armjig::kinovazed

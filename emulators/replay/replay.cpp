@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array kReplays{
     ReplayEntry{"demo", demo::replay},
-    ReplayEntry{"kinovazed", kinovazed::replay, kinovazed::first_difference},
+    ReplayEntry{"kinovazed", kinovazed::replay, kinovazed::session_difference},
     ReplayEntry{"morap", morap::replay},
     ReplayEntry{"parol6", parol6::replay},
 };
