@@ -104,7 +104,7 @@ const std::vector<Step>& steps() {
         {"emulators/i2c/bus.cpp", "to the emulated devices on it"},
         {"emulators/i2c/bus.hpp", "to an emulated device"},
         {"emulators/replay/morap.cpp", "to an emulated bus"},
-        {"harness/drive/morap/drive.cpp", "whoever makes a drive hands it a port"},
+        {"harness/drive/morap/master.cpp", "whoever makes a master hands it a port"},
         {"harness/link/emulated_bus_port.hpp", "to an emulated bus"},
         {"harness/link/impaired_bus.cpp", "passes on what it is given"},
         {"harness/link/impaired_stream.cpp", "passes on what it is given"},
