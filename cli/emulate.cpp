@@ -16,6 +16,7 @@
 #include "conformance/program_check.hpp"
 #include "emulators/host/devices.hpp"
 #include "emulators/host/host.hpp"
+#include "emulators/host/session_host.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -29,6 +30,8 @@ constexpr auto kHelp =
     "  armjig emulate parol6 --tcp 0 --pty --json   both, any free port, for scripts\n"
     "  armjig emulate parol6 --set fault=swap-bytes:speed.j1   a faulty one\n"
     "  armjig emulate parol6 --check                tells what the client program does wrong\n"
+    "  armjig emulate kinovazed                     a server on its own TCP port, 51717\n"
+    "  armjig emulate kinovazed --tcp 0 --set objectives=my.json\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
@@ -50,10 +53,11 @@ struct Options {
 
 std::string all_devices() {
   std::string names;
+  for (const auto& entry : hosted_servers()) names += std::string{entry.device} + ", ";
   for (const auto& entry : hosted_devices()) {
-    if (!names.empty()) names += ", ";
-    names += entry.device;
+    names += std::string{entry.device} + ", ";
   }
+  names.resize(names.size() - 2);
   return names;
 }
 
@@ -138,9 +142,33 @@ Exit conclude(ProgramCheck& check, const Options& options) {
   return static_cast<Exit>(conclusion_of(result));
 }
 
+Exit emulate_server(const ServerEntry& entry, const Options& options,
+                    const DeviceOptions& settings) {
+  if (options.wants_pty || !options.pty.link.empty()) {
+    return report(
+        Problem{ErrorCode::kBadValue, options.device,
+                "it is a TCP server and has no pseudo-terminal; leave out --pty, --link"});
+  }
+  auto server = entry.make(settings, options.device);
+  if (!server) return report(server.error());
+  SessionHostOptions host_options{.tcp = options.tcp, .speed = options.speed};
+  if (!options.wants_tcp) host_options.tcp.port = entry.port;
+  host_options.on_signal = HostOptions::OnSignal::kStop;
+  host_options.log = [](std::string_view line) { fmt::print(stderr, "armjig: {}\n", line); };
+  auto host = SessionHost::open(std::move(*server), host_options);
+  if (!host) return report(host.error());
+  announce(options, {host->target()});
+  host->run();
+  print_statistics(host->statistics());
+  return Exit::kPassed;
+}
+
 Exit emulate(const Options& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
+  for (const auto& entry : hosted_servers()) {
+    if (entry.device == options.device) return emulate_server(entry, options, *settings);
+  }
   auto device = make_hosted_device(options.device, *settings);
   if (!device) return report(device.error());
   std::unique_ptr<ProgramCheck> check;

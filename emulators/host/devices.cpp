@@ -9,6 +9,7 @@
 
 #include "emulators/demo/demo.hpp"
 #include "emulators/faults/faulty.hpp"
+#include "emulators/host/kinovazed_options.hpp"
 #include "emulators/host/parol6_options.hpp"
 #include "harness/link/memory_stream.hpp"
 
@@ -57,18 +58,29 @@ constexpr std::array kDevices{
     entry<parol6::make_arm>("parol6"),
 };
 
+Outcome<std::unique_ptr<HostedServer>> host_kinovazed(const DeviceOptions& options,
+                                                      const std::string& where) {
+  auto server = kinovazed::make_server(options, where);
+  if (!server) return tl::unexpected{server.error()};
+  return make_hosted_server(*std::move(server));
+}
+
+constexpr std::array kServers{ServerEntry{"kinovazed", host_kinovazed, 51717}};
+
 std::string all_names() {
   std::string names;
+  for (const auto& entry : kServers) names += std::string{entry.device} + ", ";
   for (const auto& entry : kDevices) {
-    if (!names.empty()) names += ", ";
-    names += entry.device;
+    names += std::string{entry.device} + ", ";
   }
+  names.resize(names.size() - 2);
   return names;
 }
 
 }  // namespace
 
 std::span<const HostEntry> hosted_devices() noexcept { return kDevices; }
+std::span<const ServerEntry> hosted_servers() noexcept { return kServers; }
 
 const HostEntry& hosted_device(std::string_view device) noexcept {
   return *std::ranges::find(kDevices, device, &HostEntry::device);

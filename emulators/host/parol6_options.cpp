@@ -24,8 +24,8 @@ struct Choice {
   Meaning meaning;
 };
 
-constexpr std::array kProfiles{Choice<BoardProfile>{"firmware", kFirmware},
-                               Choice<BoardProfile>{"documented", kDocumented}};
+constexpr std::array kProfiles{Choice<BoardProfile>{"firmware", kFirmwareBoard},
+                               Choice<BoardProfile>{"documented", kDocumentedBoard}};
 constexpr std::array kCheckPolicies{
     Choice<CheckPolicy>{"ignore", CheckPolicy::kIgnore},
     Choice<CheckPolicy>{"d4", CheckPolicy::kBoardOnly},

@@ -20,7 +20,7 @@ namespace armjig::parol6 {
 struct ArmOptions {
   Plant plant = standard_plant();
   BoardTiming timing{};
-  BoardProfile profile = kFirmware;
+  BoardProfile profile = kFirmwareBoard;
   BoardFigures figures{};
   std::optional<GripperOptions> gripper = GripperOptions{};  ///< none: nothing is on the CAN
 };

@@ -38,9 +38,9 @@ struct Emission {
   std::variant<TelemetryBytes, CanFrame> what;
 };
 
-/// The PAROL6 control board on a virtual clock: with `kFirmware` the shipped one, byte for byte,
-/// otherwise one that differs from it as its profile says. A regular value: a copy is a snapshot.
-/// Same inputs at the same times give the same bytes.
+/// The PAROL6 control board on a virtual clock: with `kFirmwareBoard` the shipped one, byte for
+/// byte, otherwise one that differs from it as its profile says. A regular value: a copy is a
+/// snapshot. Same inputs at the same times give the same bytes.
 ///
 /// The firmware is one endless loop. In a pass, time stands still: it acts on the last command,
 /// then takes at most one CAN frame, then reads all bytes that have come and answers every frame
@@ -49,7 +49,7 @@ struct Emission {
 class Board {
  public:
   explicit Board(const Plant& plant, const BoardTiming& timing = {},
-                 const BoardProfile& profile = kFirmware, const BoardFigures& figures = {});
+                 const BoardProfile& profile = kFirmwareBoard, const BoardFigures& figures = {});
 
   /// Bytes that become readable at `time`. Runs the passes before `time` first. Times of all
   /// inputs and of `advance_to` must not decrease.

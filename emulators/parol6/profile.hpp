@@ -49,9 +49,9 @@ struct BoardProfile {
   friend bool operator==(const BoardProfile&, const BoardProfile&) = default;
 };
 
-inline constexpr BoardProfile kFirmware{};
+inline constexpr BoardProfile kFirmwareBoard{};
 
-inline constexpr BoardProfile kDocumented{
+inline constexpr BoardProfile kDocumentedBoard{
     .check = CheckPolicy::kBoardOnly,
     .resynchronises = true,
     .acts_on_each_frame = true,

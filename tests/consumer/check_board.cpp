@@ -18,10 +18,9 @@ int main() {
   int failed = 0;
   const armjig::RunOptions options{.selection = {.tier = armjig::Tier::kQuick},
                                    .permissions = armjig::Permissions::all()};
-  const auto report =
-      armjig::run_suite(suite, **bench, options, [&](const armjig::ReportRow& row) {
-        if (row.verdict == armjig::Verdict::kFail) ++failed;
-      });
+  const auto report = armjig::run_suite(suite, **bench, options, [&](const armjig::ReportRow& row) {
+    if (row.verdict == armjig::Verdict::kFail) ++failed;
+  });
   std::printf("%zu cases, %d failed\n", report.rows.size(), failed);
   return report.rows.empty() || failed > 0 ? 1 : 0;
 }

@@ -258,10 +258,9 @@ class List {
         return {"zero", "stuck", "stale", "off-by-one", "reverse-bits"};
       case Encoding::kBits:
         return {"stuck", "stale", "reverse-bits"};
-      case Encoding::kLiteral:
-        break;
+      default:  // nothing else is in the board's messages
+        return {"off-by-one"};
     }
-    return {"off-by-one"};
   }
 
   std::vector<NamedFault> all_;

@@ -30,7 +30,7 @@ Desk desk_with(const BoardProfile& profile, const Plant& plant = standard_plant(
   return desk;
 }
 
-Desk documented_desk() { return desk_with(kDocumented); }
+Desk documented_desk() { return desk_with(kDocumentedBoard); }
 
 ByteVector with_check(std::uint8_t check) {
   auto frame = command(Command::kIdle);
@@ -66,7 +66,7 @@ TEST(DocumentedBoard, TakesOnlyTheCheckByteOfTheDocument) {
 }
 
 TEST(BoardProfile, ChoosesWhichCheckBytesAreTakenOfEitherReceiver) {
-  for (auto profile : {kFirmware, kDocumented}) {
+  for (auto profile : {kFirmwareBoard, kDocumentedBoard}) {
     const auto answers = [&profile](CheckPolicy policy, std::uint8_t check) {
       profile.check = policy;
       return desk_with(profile).send(with_check(check)).size();
@@ -165,7 +165,7 @@ TEST(DocumentedBoard, HomesAgainAfterAnotherCode) {
 TEST(DocumentedBoard, BeginsAnInterruptedHomingAfresh) {
   for (const auto code :
        {Command::kJog, Command::kGoTo, Command::kDisable, Command::kClearError, Command::kEnable}) {
-    auto desk = interrupted_desk(kDocumented, code);
+    auto desk = interrupted_desk(kDocumentedBoard, code);
     desk.hold(command(Command::kHome), 20ms);
     EXPECT_EQ(desk.board.joints()[3].stepper.speed(), StepRate{5550});  // J4's seek
     desk.hold(command(Command::kIdle), 40s);
@@ -174,17 +174,17 @@ TEST(DocumentedBoard, BeginsAnInterruptedHomingAfresh) {
 }
 
 TEST(DocumentedBoard, HasNoSpeedLeftOfAHomingThatWasDisabled) {
-  EXPECT_THAT(speeds(interrupted_desk(kDocumented, Command::kDisable).board), Each(0.0F));
+  EXPECT_THAT(speeds(interrupted_desk(kDocumentedBoard, Command::kDisable).board), Each(0.0F));
 }
 
 TEST(ShippedBoard, ForgetsNotAllOfAnInterruptedHoming) {  // the contrast to the test above
-  auto desk = interrupted_desk(kFirmware, Command::kJog);
+  auto desk = interrupted_desk(kFirmwareBoard, Command::kJog);
   desk.hold(command(Command::kHome), 20ms);
   EXPECT_EQ(desk.board.joints()[0].stepper.speed(), StepRate{-2050});  // J1 backs off at once
 }
 
 TEST(DocumentedBoard, SaysWhichJointsLeftTheirRangeUntilCleared) {
-  auto desk = homed_desk(kDocumented);
+  auto desk = homed_desk(kDocumentedBoard);
   // J1 stands at 10240 of at most 14000 steps.
   EXPECT_EQ(desk.hold(command(Command::kJog, {5000}), 700ms).position_error, 0x03);
   EXPECT_EQ(desk.hold(command(Command::kJog, {5000}), 200ms).position_error, 0x83);
@@ -223,7 +223,7 @@ TEST(DocumentedBoard, IsDisabledByTheEmergencyStop) {
 }
 
 TEST(BoardProfile, MayStopJointsAtTheirBounds) {
-  auto profile = kDocumented;
+  auto profile = kDocumentedBoard;
   profile.stops_at_bounds = true;
   auto desk = homed_desk(profile);
   auto answer = desk.hold(command(Command::kJog, {5000}), 2s);
