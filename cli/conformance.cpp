@@ -164,7 +164,9 @@ Exit conformance(Options options) {
   if (!options.explain.empty()) return explain(*suite, options.explain);
   if (options.list) return list_requirements(*suite, options);
   if (select(*suite, options.run.profile, options.run.selection).empty()) {
-    (void)report({ErrorCode::kBadValue, "--filter " + options.run.selection.filter,
+    const auto& filter = options.run.selection.filter;
+    (void)report({ErrorCode::kBadValue,
+                  filter.empty() ? "--shard " + options.shard : "--filter " + filter,
                   "no case is selected; --list shows the requirements"});
     return Exit::kNothing;
   }
