@@ -36,11 +36,11 @@ struct DriveEvent {
     kEstopPressed,   ///< latched: only disable frames leave from now on
     kEstopReleased,  ///< still latched
     kLinkSilent,     ///< no telemetry for half a second
-    kLinkBack,      ///< nothing that was under way before the silence goes on by itself
-    kTookEffect,    ///< telemetry shows what was asked for
-    kNoEffect,      ///< it does not
-    kNothingMoved,  ///< the command was accepted, but the joint stands
-    kStillMoves,    ///< the joint moves although it was stopped
+    kLinkBack,       ///< nothing that was under way before the silence goes on by itself
+    kTookEffect,     ///< telemetry shows what was asked for
+    kNoEffect,       ///< it does not
+    kNothingMoved,   ///< the command was accepted, but the joint stands
+    kStillMoves,     ///< the joint moves although it was stopped
     kHomed,
   };
   Kind kind{};
