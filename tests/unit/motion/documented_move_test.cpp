@@ -164,8 +164,8 @@ TEST(DocumentedPoseMove, IsRefusedOutOfReach) {
 }
 
 TEST(DocumentedPoseMove, NamesTheJointWhoseLimitIsInTheWay) {
-  // Behind the arm: joint 1 would have to turn to 180 degrees.
-  const Move move{.kind = Move::Kind::kPose, .target = {-262.57, 0, 288.75, 180, 90, 0}};
+  // Standby turned half around: joint 1 would have to be at 180 degrees.
+  const Move move{.kind = Move::Kind::kPose, .target = {-262.57, 0, 288.75, 0, -90, 0}};
   const auto refusal = refused(move, standby());
   EXPECT_EQ(refusal.reason, Reason::kOutOfLimits);
   EXPECT_TRUE(refusal.joint.has_value());
