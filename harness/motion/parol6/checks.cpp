@@ -34,6 +34,26 @@ std::optional<Refusal> check_limits(const JointSteps& goal) noexcept {
   return std::nullopt;
 }
 
+tl::expected<arm::SixJoints, Refusal> reach(const arm::Arm& arm, const arm::SphericalWrist& solver,
+                                            const arm::Pose& pose, const arm::SixJoints& seed,
+                                            double time) {
+  const auto branches = solver.solve(pose, seed);
+  if (branches.empty()) {
+    return tl::unexpected{Refusal{.reason = Refusal::Reason::kUnreachable, .time = time}};
+  }
+  if (const auto joints = nearest(arm, branches, seed)) return *joints;
+  // The branch that would go on from the seed says which limit is in the way.
+  const auto joints = *nearest(without_limits(arm), branches, seed);
+  const auto j = first_outside(arm, joints);
+  const auto& joint = arm.joints[j];
+  return tl::unexpected{
+      Refusal{.reason = Refusal::Reason::kOutOfLimits,
+              .joint = j,
+              .value = to_degrees(joints[j]),
+              .limit = to_degrees(joints[j] < joint.lower ? joint.lower : joint.upper),
+              .time = time}};
+}
+
 std::optional<Refusal> check_peak(std::size_t joint, const Peak& peak) noexcept {
   const double max_speed = kJointRanges[joint].max_speed.value;
   const double max_acceleration = kJointRanges[joint].max_acceleration;

@@ -163,6 +163,14 @@ TEST(DocumentedPoseMove, IsRefusedOutOfReach) {
   EXPECT_EQ(refused(move, standby()).reason, Reason::kUnreachable);
 }
 
+TEST(DocumentedPoseMove, NamesTheJointWhoseLimitIsInTheWay) {
+  // Standby turned half around: joint 1 would have to be at 180 degrees.
+  const Move move{.kind = Move::Kind::kPose, .target = {-262.57, 0, 288.75, 0, -90, 0}};
+  const auto refusal = refused(move, standby());
+  EXPECT_EQ(refusal.reason, Reason::kOutOfLimits);
+  EXPECT_TRUE(refusal.joint.has_value());
+}
+
 /// How far a plan's postures are from the straight line between its ends.
 struct Deviation {
   double mm{};
