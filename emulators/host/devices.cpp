@@ -5,8 +5,10 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "emulators/demo/demo.hpp"
+#include "emulators/faults/faulty.hpp"
 #include "emulators/host/kinovazed_options.hpp"
 #include "emulators/host/parol6_options.hpp"
 #include "harness/link/memory_stream.hpp"
@@ -14,9 +16,19 @@
 namespace armjig {
 namespace {
 
-Outcome<demo::StreamDevice> make_demo(const DeviceOptions& options, const std::string& where) {
-  if (options.empty()) return demo::StreamDevice{};
-  return problem(ErrorCode::kUnknownOption, where, "the demo device has no options");
+Outcome<Faulty<demo::StreamDevice>> make_demo(const DeviceOptions& options,
+                                              const std::string& where) {
+  std::vector<Fault> faults;
+  for (const auto& [name, value] : options) {
+    if (name == "profile" && (value == "firmware" || value == "documented")) continue;
+    if (name != "fault") {
+      return problem(ErrorCode::kUnknownOption, where, "the demo device has profile and fault");
+    }
+    const auto fault = parse_fault(value, demo::reply_fields());
+    if (!fault) return tl::unexpected{fault.error()};
+    faults.push_back(*fault);
+  }
+  return Faulty{demo::StreamDevice{}, std::move(faults), demo::kMessageSize};
 }
 
 /// A device behind a link of the operating system.

@@ -45,6 +45,10 @@ class BusPort {
   /// Stop condition.
   virtual Result<void> stop() = 0;
 
+  /// Nine clocks and a stop, for a device that holds the data line in the middle of a byte.
+  /// `kUnsupported` where the clock cannot be moved by hand; `kBusy` if the line is still held.
+  virtual Result<void> recover() { return fail(ErrorCode::kUnsupported); }
+
   /// Lets time pass.
   virtual void wait_until(Instant time) = 0;
   [[nodiscard]] virtual Instant now() const = 0;

@@ -10,13 +10,16 @@
 
 namespace armjig {
 
-/// How the bytes of a field become a number. Multi-byte fields are big-endian.
+/// How the bytes of a field become a number. Multi-byte fields are big-endian but for those that
+/// say otherwise.
 enum class Encoding : std::uint8_t {
   kUnsigned,
-  kSigned,   ///< two's complement in the width of the field
-  kBits,     ///< one byte of flags; `Field::bits` names them from bit 7 down
-  kCode,     ///< one byte with named values; a value without a name keeps its number
-  kLiteral,  ///< the same bytes in every valid message
+  kSigned,          ///< two's complement in the width of the field
+  kBits,            ///< one byte of flags; `Field::bits` names them from bit 7 down
+  kCode,            ///< one byte with named values; a value without a name keeps its number
+  kLiteral,         ///< the same bytes in every valid message
+  kUnsignedLittle,  ///< little-endian
+  kFloatLittle,     ///< IEEE single precision, little-endian; as a number its 32 bits
 };
 
 /// Where a field stands.

@@ -17,11 +17,17 @@
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_server
 #include "fuzz/kinovazed_server.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_morap_wire
+#include "fuzz/morap_wire.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_board
 #include "fuzz/parol6_board.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_splitter
 #include "fuzz/parol6_splitter.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_rbtscript
+#include "fuzz/rbtscript.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_trace_reader
 #include "fuzz/trace_reader.cpp"
@@ -51,6 +57,8 @@ void run_corpus(Target target, const char* name) {
   }
 }
 
+TEST(FuzzCorpus, MorapMessagesComeBack) { run_corpus(fuzz_morap_wire, "morap_wire"); }
+
 TEST(FuzzCorpus, CuttingTheStreamDifferentlyChangesNothing) {
   run_corpus(fuzz_parol6_splitter, "parol6_splitter");
 }
@@ -62,6 +70,8 @@ TEST(FuzzCorpus, NoClientEndsTheEmulatedServer) {
 TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {
   run_corpus(fuzz_parol6_board, "parol6_board");
 }
+
+TEST(FuzzCorpus, AnyTextIsAProgramOrRefused) { run_corpus(fuzz_rbtscript, "rbtscript"); }
 
 TEST(FuzzCorpus, AnyTextIsATraceOrRefused) { run_corpus(fuzz_trace_reader, "trace_reader"); }
 
