@@ -32,6 +32,9 @@ void add_decode(CLI::App& app, Action& action);
 void add_devices(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_emulate(CLI::App& app, Action& action);
+void add_i2c(CLI::App& app, Action& action);
+void add_lab(CLI::App& app, Action& action);
+void add_morap(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_watch(CLI::App& app, Action& action);
 
