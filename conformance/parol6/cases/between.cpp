@@ -162,8 +162,9 @@ void open_gripper(BoardBench& board) {
   const auto is_calibrated = [](const Answer& answer) {
     return (answer.gripper.status & gripper_status::kCalibrated) != 0;
   };
-  board.act(idle());
-  const auto answer = board.act(idle());
+  const GripperSetPoint active{.command = gripper_command::kActivate};
+  board.act(with_gripper(active));
+  const auto answer = board.act(with_gripper(active));
   if (answer.gripper.current == Milliamperes{2} && answer.gripper.status == 1) {
     return board.leave_open("no gripper answers on the board's CAN");
   }
