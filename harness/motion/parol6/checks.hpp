@@ -18,6 +18,11 @@ namespace armjig::parol6 {
 /// A target that is not within its joints' ranges, the limits themselves included.
 [[nodiscard]] std::optional<Refusal> check_limits(const JointSteps& goal) noexcept;
 
+/// The limit that the posture nearest to `seed` would be beyond, whatever other postures there are.
+[[nodiscard]] std::optional<Refusal> limit_in_the_way(const arm::Arm& arm,
+                                                      const arm::Branches& branches,
+                                                      const arm::SixJoints& seed, double time);
+
 /// The posture nearest to `seed` that has a pose, or why the arm has none.
 [[nodiscard]] tl::expected<arm::SixJoints, Refusal> reach(const arm::Arm& arm,
                                                           const arm::SphericalWrist& solver,

@@ -84,7 +84,11 @@ class Follower {
       path_.push_back(approached(path_.back(), *joints));
       return std::nullopt;
     }
-    if (!is_near) return refusal;
+    if (!is_near) {
+      // Who leaps without a singularity does so into another posture, away from a limit.
+      const auto branches = solver_.solve(pose, path_.back());
+      return limit_in_the_way(arm_, branches, path_.back(), time).value_or(*refusal);
+    }
     return Refusal{.reason = Refusal::Reason::kSingular, .joint = refusal->joint, .time = time};
   }
 

@@ -274,6 +274,16 @@ TEST(DocumentedLine, StopsAtASingularityItCannotPass) {
   EXPECT_EQ(line.singularities.front().last + 1, line.set_points.size());
 }
 
+TEST(DocumentedLine, NamesTheLimitThatItWouldPassAndNotTheLeapAroundIt) {
+  // Joint 4 is led out of its range; another posture within all ranges is far away.
+  const Move move{
+      .kind = Move::Kind::kLine, .target = {60, 262, 200, -90, 40, -90}, .timing = {.duration = 6}};
+  const auto refusal = refused(move, at({90, -90, 180, 0, -20, 180}));
+  EXPECT_EQ(refusal.reason, Reason::kOutOfLimits);
+  EXPECT_EQ(refusal.joint, 3U);
+  EXPECT_NEAR(std::abs(refusal.value), 105.47, 5);
+}
+
 TEST(DocumentedLine, IsRefusedAtASingularityIfAskedTo) {
   const auto refusal = refused(past_a_straight_wrist(), before_a_straight_wrist(),
                                {.on_singularity = OnSingularity::kRefuse});
