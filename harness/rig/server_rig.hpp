@@ -25,6 +25,7 @@ class ServerRig {
                                                OpenEmulatedSession open_emulated);
 
   [[nodiscard]] SessionPort& port() noexcept { return *port_; }
+  [[nodiscard]] const SessionPort& port() const noexcept { return *port_; }
 
   /// Why the guard last refused a write; none if it never did.
   [[nodiscard]] std::optional<Refusal> last_refusal() const;

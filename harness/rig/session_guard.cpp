@@ -116,8 +116,11 @@ void GuardedSession::stop() {
   const auto deadline = now() + kStopTakes;
   std::array<std::byte, 4096> buffer;
   while (now() < deadline) {
-    const auto received = port_->receive(buffer, deadline);
-    if (!received || received->arrival != Arrival::kData) return;
+    if (supervisor_) (void)supervisor_->tell(Supervisor::Motion::kPossible);
+    const auto received = port_->receive(buffer, std::min(deadline, now() + kLongestWait));
+    if (!received || received->arrival == Arrival::kEnd || received->arrival == Arrival::kReset) {
+      return;
+    }
     judge_->observe(Bytes{buffer}.first(received->size));
   }
 }

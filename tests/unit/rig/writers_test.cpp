@@ -98,6 +98,7 @@ const std::vector<Step>& steps() {
        {{"harness/rig/rig.cpp", "makes it"},
         {"harness/rig/server_rig.cpp", "makes the one for servers"},
         {"cli/kinovazed_console.cpp", "hands its port to a drive"},
+        {"cli/server_stream.cpp", "for those who only listen"},
         {"cli/target_options.cpp", "for every subcommand that has --target"},
         {"conformance/demo/suite.cpp", "for `armjig conformance demo`"},
         {"conformance/parol6/suite.cpp", "for `armjig conformance parol6`"}}},
