@@ -91,6 +91,7 @@ const std::vector<Step>& steps() {
         {"harness/link/serial_stream.hpp", "declares them"},
         {"harness/link/tcp_session.cpp", "makes them"},
         {"harness/link/tcp_session.hpp", "declares them"},
+        {"harness/rig/server_rig.cpp", "guards it right behind, see the last test"},
         {"harness/rig/target.cpp", "in open_stream, which only Rig::open calls (next step)"}}},
       {"opening a target without a guard",
        R"(\bopen_stream\s*\()",
@@ -102,6 +103,9 @@ const std::vector<Step>& steps() {
        {{"harness/rig/bus_rig.cpp", "makes it"},
         {"harness/rig/rig.cpp", "makes it"},
         {"cli/bus_session.cpp", "for every subcommand that has a bus behind --target"},
+        {"harness/rig/server_rig.cpp", "makes the one for servers"},
+        {"cli/kinovazed_console.cpp", "hands its port to a drive"},
+        {"cli/server_stream.cpp", "for those who only listen"},
         {"cli/target_options.cpp", "for every subcommand that has --target"},
         {"conformance/demo/suite.cpp", "for `armjig conformance demo`"},
         {"conformance/parol6/suite.cpp", "for `armjig conformance parol6`"}}},
@@ -129,11 +133,16 @@ const std::vector<Step>& steps() {
         {"harness/core/emulation.hpp", "a concept of emulated devices, no code"}}},
       {"sending in a session",
        R"(#include "harness/link/(session_port|tcp_session)\.hpp")",
-       {{"harness/drive/kinovazed/client.hpp", "whoever makes a client hands it a port"},
-        {"harness/link/impaired_session.hpp", "passes on what it is given"},
+       {{"harness/link/impaired_session.hpp", "passes on what it is given"},
         {"harness/link/memory_session.hpp", "to an emulated device in memory"},
-        {"harness/link/tcp_session.cpp", "makes them; nobody opens them yet"},
-        {"harness/link/tcp_session.hpp", "declares them"}}},
+        {"harness/link/tcp_session.cpp", "makes them"},
+        {"harness/link/tcp_session.hpp", "declares them"},
+        {"harness/drive/kinovazed/client.hpp", "whoever makes a client hands it the port of a rig"},
+        {"harness/rig/session_guard.hpp", "is the guard"},
+        {"harness/rig/session_log.hpp", "passes on what it is given"},
+        {"harness/rig/server_rig.hpp", "puts log, guard and impairments around it"},
+        {"harness/rig/server_rig.cpp", "the same"},
+        {"emulators/host/emulated_session.hpp", "to an emulated server in memory"}}},
       {"system calls that put bytes on a wire",
        R"([^\w]::(write|pwrite|writev|send|sendto|sendmsg|sp_\w*write)\s*\()",
        {{"emulators/host/pty_link.cpp", "an emulated device answers its client"},
@@ -145,7 +154,13 @@ const std::vector<Step>& steps() {
         {"harness/link/real_streams.cpp", "answers it"},
         {"harness/link/serial_stream.cpp", "answers it"},
         {"harness/link/impaired_stream.hpp", "passes on what it is given"},
+        {"harness/link/session_port.hpp", "declares it for servers"},
+        {"harness/link/tcp_session.cpp", "answers it"},
+        {"harness/link/impaired_session.hpp", "passes on what it is given"},
         {"harness/rig/wire_log.hpp", "passes on what it is given"},
+        {"harness/rig/session_log.hpp", "passes on what it is given"},
+        {"harness/rig/session_guard.hpp", "passes on what it is given"},
+        {"harness/rig/session_guard.cpp", "hands it to the supervisor, which writes only the stop"},
         {"harness/rig/guard.hpp", "passes on what it is given"},
         {"harness/rig/guard.cpp", "hands it to the supervisor, which writes only the stop"}}},
       {"opening files by system call",
@@ -194,6 +209,17 @@ TEST(Writers, TheOnlyWayToARigIsTheOneThatGuards) {
   EXPECT_LT(opened, asked);
   EXPECT_LT(asked, guarded);
   EXPECT_EQ(code.find("= open_port(", opened + 1 + sizeof "port "), std::string::npos) << "twice";
+}
+
+TEST(Writers, TheOnlyWayToAServerIsTheOneThatGuards) {
+  const auto code =
+      without_comments(read(fs::path{ARMJIG_SOURCE_DIR} / "harness/rig/server_rig.cpp"));
+  const auto opened = code.find("port = open_session(");
+  const auto asked = code.find("if (!options.target.is_emulated())");
+  const auto guarded = code.find("make_unique<GuardedSession>(");
+  EXPECT_LT(opened, asked);
+  EXPECT_LT(asked, guarded);
+  EXPECT_NE(guarded, std::string::npos);
 }
 
 }  // namespace
