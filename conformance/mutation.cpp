@@ -191,7 +191,7 @@ class Mutation {
     }
     std::vector<char> is_proven(open_ones.size());
     in_parallel(options_.threads, open_ones.size(),
-                [&](std::size_t i) { is_proven[i] = breaks_on_a_mutant(*open_ones[i]); });
+                [&](std::size_t i) { is_proven[i] = breaks_on_a_mutant(*open_ones[i]) ? 1 : 0; });
     for (std::size_t i = 0; i < open_ones.size(); ++i) {
       if (is_proven[i] == 0) result_.unproven.push_back(open_ones[i]);
     }
