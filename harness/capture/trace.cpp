@@ -91,7 +91,8 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
   LineReader reader{json};
   const bool is_in_milliseconds = json.contains("t_ms");
   if (!is_in_milliseconds) reader.require("t_us");
-  reader.require("dir");
+  const char* const dir = json.contains("op") ? "op" : "dir";
+  reader.require(dir);
   TraceEvent event;
   event.line = number;
   event.time =
@@ -99,13 +100,15 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
              ? Duration{std::chrono::milliseconds{
                    reader.integer("t_ms", 0, kLatestMicroseconds / 1000)}}
              : Duration{std::chrono::microseconds{reader.integer("t_us", 0, kLatestMicroseconds)}});
-  event.dir = reader.text("dir");
+  event.dir = reader.text(dir);
   event.bytes = reader.bytes("hex");
-  event.id = static_cast<std::uint32_t>(reader.integer("id", 0, UINT32_MAX));
+  const auto* const id = json.contains("conn") ? "conn" : "id";
+  event.id = static_cast<std::uint32_t>(reader.integer(id, 0, UINT32_MAX));
   event.name = reader.text("name");
   if (json.contains("value") && json["value"].is_number_integer()) {
     event.value = reader.integer("value", INT64_MIN, INT64_MAX);
   }
+  event.json = line;
   if (!reader.complaint().empty()) return malformed(path, number, reader.complaint());
   return event;
 }
@@ -120,13 +123,15 @@ std::string_view next_line(std::string_view& rest) {
 }
 
 bool is_same(const TraceEvent& a, const TraceEvent& b) {
-  return a.dir == b.dir && a.time == b.time && a.id == b.id && a.bytes == b.bytes;
+  return a.dir == b.dir && a.time == b.time && a.id == b.id && a.bytes == b.bytes &&
+         a.text == b.text;
 }
 
 std::string describe_event(const std::optional<TraceEvent>& event) {
   if (!event) return "nothing";
   const auto id = event->dir.starts_with("can_") ? fmt::format(" id {:03X}", event->id) : "";
-  return fmt::format("{:>10} us {}{} {}", microseconds(event->time), event->dir, id,
+  const auto text = event->text.empty() ? "" : event->text + " ";
+  return fmt::format("{:>10} us {}{} {}{}", microseconds(event->time), event->dir, id, text,
                      to_hex_dump(event->bytes));
 }
 

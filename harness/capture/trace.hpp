@@ -18,11 +18,13 @@ namespace armjig {
 struct TraceEvent {
   std::size_t line{};  ///< in the file, from 1
   Instant time{};
-  std::string dir;  ///< `to_device`, `from_device`, ...: what happened
+  std::string dir;  ///< `to_device`, `from_device`, `write`, ...: what happened
   std::vector<std::byte> bytes;
-  std::uint32_t id{};  ///< of a CAN frame
+  std::uint32_t id{};  ///< of a CAN frame, or the number of a connection
   std::string name;    ///< of an input
   std::int64_t value{};
+  std::string text;  ///< what bytes do not say, for comparison: acknowledgements, lamps
+  std::string json;  ///< the line as it stands there, for keys that only one device has
 };
 
 /// A recording as text: JSON Lines, first a header, then events in order of time.

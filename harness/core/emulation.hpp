@@ -57,12 +57,32 @@ concept EmulatedServer =
       device.clear_sent();
     };
 
-/// A device at the other end of an I2C bus, byte by byte. `write` tells whether it acknowledges.
+/// A device at the other end of an I2C bus, byte by byte. `write` tells whether it acknowledges. It
+/// may have more (`emulators/i2c/bus.hpp`).
 template <class Device>
 concept EmulatedBusDevice = std::copyable<Device> && requires(Device device, Instant time) {
   { device.acknowledges(std::uint8_t{}) } -> std::same_as<bool>;
   { device.write(time, std::byte{}) } -> std::same_as<bool>;
   { device.read(time) } -> std::same_as<std::byte>;
+};
+
+/// What came of one operation on a bus.
+struct BusReply {
+  enum class Outcome : std::uint8_t { kAck, kNack, kArbitrationLost, kDataHeld };
+
+  Outcome outcome{};
+  Instant end{};     ///< of the operation; long after its bits if a device stretches the clock
+  std::byte byte{};  ///< of a read
+};
+
+/// A whole I2C bus: operations of its master go in with the time at which they begin.
+template <class Bus>
+concept EmulatedBus = std::copyable<Bus> && requires(Bus bus, Instant time) {
+  { bus.start(time, std::uint8_t{}, /*is_read=*/bool{}) } -> std::same_as<BusReply>;
+  { bus.write(time, std::byte{}) } -> std::same_as<BusReply>;
+  { bus.read(time) } -> std::same_as<BusReply>;
+  { bus.stop(time) } -> std::same_as<BusReply>;
+  { bus.recover(time) } -> std::same_as<BusReply>;
 };
 
 }  // namespace armjig

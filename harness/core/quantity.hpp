@@ -49,6 +49,18 @@ struct Degrees {
 struct Radians {
   static constexpr auto symbol = "rad";
 };
+struct RadiansPerSecond {
+  static constexpr auto symbol = "rad/s";
+};
+struct Volts {
+  static constexpr auto symbol = "V";
+};
+struct Amperes {
+  static constexpr auto symbol = "A";
+};
+struct NewtonMetres {
+  static constexpr auto symbol = "N m";
+};
 struct Millimetres {
   static constexpr auto symbol = "mm";
 };

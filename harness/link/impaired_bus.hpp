@@ -30,6 +30,7 @@ class ImpairedBus final : public BusPort {
   [[nodiscard]] Result<Ack> write(std::byte byte) override;
   [[nodiscard]] Result<std::byte> read(Ack reply) override;
   Result<void> stop() override;
+  Result<void> recover() override { return inner_->recover(); }
   void wait_until(Instant time) override { inner_->wait_until(time); }
   [[nodiscard]] Instant now() const override { return inner_->now(); }
 

@@ -7,6 +7,8 @@
 
 #include "harness/core/hex.hpp"
 #include "harness/wire/demo/demo.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
+#include "harness/wire/morap/dissector.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 
 namespace armjig {
@@ -14,6 +16,8 @@ namespace {
 
 constexpr std::array kDissectors{
     DissectorEntry{"demo", demo::make_dissector},
+    DissectorEntry{"kinovazed", kinovazed::make_dissector},
+    DissectorEntry{"morap", morap::make_dissector},
     DissectorEntry{"parol6", parol6::make_dissector},
 };
 

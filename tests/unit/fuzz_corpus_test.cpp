@@ -14,6 +14,12 @@
 
 // Each target under a name of its own.
 // NOLINTBEGIN(bugprone-suspicious-include)
+#define LLVMFuzzerTestOneInput fuzz_kinovazed_server
+#include "fuzz/kinovazed_server.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_morap_wire
+#include "fuzz/morap_wire.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_board
 #include "fuzz/parol6_board.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -51,8 +57,14 @@ void run_corpus(Target target, const char* name) {
   }
 }
 
+TEST(FuzzCorpus, MorapMessagesComeBack) { run_corpus(fuzz_morap_wire, "morap_wire"); }
+
 TEST(FuzzCorpus, CuttingTheStreamDifferentlyChangesNothing) {
   run_corpus(fuzz_parol6_splitter, "parol6_splitter");
+}
+
+TEST(FuzzCorpus, NoClientEndsTheEmulatedServer) {
+  run_corpus(fuzz_kinovazed_server, "kinovazed_server");
 }
 
 TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {

@@ -18,8 +18,6 @@ namespace {
 
 using Ending = Activity::Ending;
 
-constexpr Duration kPeriod = std::chrono::milliseconds{10};
-
 /// In mm and degrees, as the vendor's program shows it.
 std::string tool_place(const JointSteps& position) {
   const auto pose = forward(arm::parol6_commander(), radians_of(position));

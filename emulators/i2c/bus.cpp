@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/i2c/bus.hpp"
+
+#include <algorithm>
+
+namespace armjig::i2c {
+namespace {
+
+using enum BusReply::Outcome;
+
+constexpr std::byte kIdle{0xFF};
+constexpr int kRecoveryClocks = 9;
+
+}  // namespace
+
+static_assert(EmulatedBus<Bus>);
+
+BusReply Bus::start(Instant time, std::uint8_t address, bool is_read) {
+  time = when_clock_is_free(time);
+  if (clocks_to_release_ > 0) return {kDataHeld, time};
+  leave_devices(time);
+  address_ = address;
+  byte_ = 0;
+  const auto end = time + kBit + kByte;
+  if (take_trouble(Trouble::Kind::kArbitrationLost)) return {kArbitrationLost, end};
+  if (take_trouble(Trouble::Kind::kNack)) return finish(end, kNack);
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    if (!devices_[i].acknowledges(address)) continue;
+    devices_[i].start(end, is_read);
+    addressed_.push_back(i);
+  }
+  return finish(end, addressed_.empty() ? kNack : kAck);
+}
+
+BusReply Bus::write(Instant time, std::byte byte) {
+  time = when_clock_is_free(time);
+  ++byte_;
+  const auto end = time + kByte;
+  if (clocks_to_release_ > 0) return {kDataHeld, end};
+  if (take_trouble(Trouble::Kind::kArbitrationLost)) {
+    leave_devices(end);
+    return {kArbitrationLost, end};
+  }
+  if (take_trouble(Trouble::Kind::kNack)) return finish(end, kNack);
+  bool is_acknowledged = false;
+  for (const auto i : addressed_) {
+    if (devices_[i].write(end, byte)) is_acknowledged = true;
+  }
+  return finish(end, is_acknowledged ? kAck : kNack);
+}
+
+BusReply Bus::read(Instant time) {
+  time = when_clock_is_free(time);
+  ++byte_;
+  if (clocks_to_release_ > 0) return {kDataHeld, time + kByte};
+  auto byte = kIdle;
+  for (const auto i : addressed_) byte &= devices_[i].read(time);
+  return finish(time + kByte, kAck, byte);
+}
+
+BusReply Bus::stop(Instant time) {
+  time = when_clock_is_free(time);
+  if (clocks_to_release_ > 0) return {kDataHeld, time + kBit};
+  leave_devices(time + kBit);
+  return {kAck, time + kBit};
+}
+
+BusReply Bus::recover(Instant time) {
+  time = when_clock_is_free(time) + kRecoveryClocks * kBit;
+  clocks_to_release_ = std::max(0, clocks_to_release_ - kRecoveryClocks);
+  return stop(time);
+}
+
+void Bus::advance_to(Instant time) {
+  for (auto& device : devices_) device.advance_to(time);
+}
+
+std::optional<Trouble> Bus::take_trouble(Trouble::Kind kind) {
+  const auto found = std::ranges::find_if(troubles_, [&](const Trouble& trouble) {
+    return trouble.kind == kind && trouble.byte == byte_ &&
+           trouble.address.value_or(address_) == address_;
+  });
+  if (found == troubles_.end()) return std::nullopt;
+  const auto trouble = *found;
+  troubles_.erase(found);
+  return trouble;
+}
+
+/// What can happen behind any byte: the clock is stretched, the data line sticks, power fails.
+BusReply Bus::finish(Instant end, BusReply::Outcome outcome, std::byte byte) {
+  Duration stretch{};
+  for (const auto i : addressed_) stretch = std::max(stretch, devices_[i].stretch());
+  if (const auto trouble = take_trouble(Trouble::Kind::kStretch)) {
+    stretch = std::max(stretch, trouble->duration);
+  }
+  clock_held_until_ = end + stretch;
+  if (const auto trouble = take_trouble(Trouble::Kind::kDataHeld)) {
+    clocks_to_release_ = trouble->clocks;
+  }
+  if (take_trouble(Trouble::Kind::kDeviceRestarts)) {
+    for (const auto i : addressed_) devices_[i].restart(end);
+    addressed_.clear();  // they have forgotten that they were addressed
+  }
+  return {outcome, clock_held_until_, byte};
+}
+
+Instant Bus::when_clock_is_free(Instant time) const noexcept {
+  return std::max(time, clock_held_until_);
+}
+
+void Bus::leave_devices(Instant time) {
+  for (const auto i : addressed_) devices_[i].stop(time);
+  addressed_.clear();
+}
+
+}  // namespace armjig::i2c

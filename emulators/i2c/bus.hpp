@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "harness/core/emulation.hpp"
+#include "harness/core/time.hpp"
+
+namespace armjig::i2c {
+
+/// Any `EmulatedBusDevice`, as a value. Besides what the concept asks for, a device may have
+///
+/// - `start(Instant, bool is_read)`: its address was matched;
+/// - `stop(Instant)`: a stop or a repeated start ended its transaction;
+/// - `advance_to(Instant)`: time goes on without traffic;
+/// - `restart(Instant)`: power fails and comes back;
+/// - `stretch()`: for how long it holds the clock after the byte that it just had.
+class BusDevice {
+ public:
+  // Copying is asked about before the concept is: the concept would ask for copying.
+  template <class Device>
+    requires(!std::same_as<Device, BusDevice>) && EmulatedBusDevice<Device>
+  explicit BusDevice(Device device) : model_{std::make_unique<Model<Device>>(std::move(device))} {}
+
+  BusDevice(const BusDevice& other) : model_{other.model_->clone()} {}
+  BusDevice& operator=(const BusDevice& other) {
+    model_ = other.model_->clone();
+    return *this;
+  }
+  BusDevice(BusDevice&&) noexcept = default;
+  BusDevice& operator=(BusDevice&&) noexcept = default;
+  ~BusDevice() = default;
+
+  [[nodiscard]] bool acknowledges(std::uint8_t address) { return model_->acknowledges(address); }
+  void start(Instant time, bool is_read) { model_->start(time, is_read); }
+  [[nodiscard]] bool write(Instant time, std::byte byte) { return model_->write(time, byte); }
+  [[nodiscard]] std::byte read(Instant time) { return model_->read(time); }
+  void stop(Instant time) { model_->stop(time); }
+  void advance_to(Instant time) { model_->advance_to(time); }
+  void restart(Instant time) { model_->restart(time); }
+  [[nodiscard]] Duration stretch() const { return model_->stretch(); }
+
+  /// The device itself; nullptr if it is none of that type.
+  template <class Device>
+  [[nodiscard]] Device* as() noexcept {
+    auto* model = dynamic_cast<Model<Device>*>(model_.get());
+    return model == nullptr ? nullptr : &model->device;
+  }
+
+ private:
+  struct Concept {
+    Concept() = default;
+    Concept(const Concept&) = delete;
+    Concept& operator=(const Concept&) = delete;
+    virtual ~Concept() = default;
+    [[nodiscard]] virtual std::unique_ptr<Concept> clone() const = 0;
+    [[nodiscard]] virtual bool acknowledges(std::uint8_t address) = 0;
+    virtual void start(Instant time, bool is_read) = 0;
+    [[nodiscard]] virtual bool write(Instant time, std::byte byte) = 0;
+    [[nodiscard]] virtual std::byte read(Instant time) = 0;
+    virtual void stop(Instant time) = 0;
+    virtual void advance_to(Instant time) = 0;
+    virtual void restart(Instant time) = 0;
+    [[nodiscard]] virtual Duration stretch() const = 0;
+  };
+
+  template <class Device>
+  struct Model final : Concept {
+    explicit Model(Device value) : device{std::move(value)} {}
+    std::unique_ptr<Concept> clone() const override { return std::make_unique<Model>(device); }
+    bool acknowledges(std::uint8_t address) override { return device.acknowledges(address); }
+    void start(Instant time, bool is_read) override {
+      if constexpr (requires { device.start(time, is_read); }) device.start(time, is_read);
+    }
+    bool write(Instant time, std::byte byte) override { return device.write(time, byte); }
+    std::byte read(Instant time) override { return device.read(time); }
+    void stop(Instant time) override {
+      if constexpr (requires { device.stop(time); }) device.stop(time);
+    }
+    void advance_to(Instant time) override {
+      if constexpr (requires { device.advance_to(time); }) device.advance_to(time);
+    }
+    void restart(Instant time) override {
+      if constexpr (requires { device.restart(time); }) device.restart(time);
+    }
+    Duration stretch() const override {
+      if constexpr (requires { device.stretch(); }) return device.stretch();
+      return {};
+    }
+    Device device;
+  };
+
+  std::unique_ptr<Concept> model_;
+};
+
+/// Something that goes wrong once, at one byte of a transaction.
+struct Trouble {
+  enum class Kind : std::uint8_t {
+    kNack,             ///< nobody acknowledges the byte, and no device sees it
+    kStretch,          ///< the clock is held for `duration`
+    kArbitrationLost,  ///< another master wins; the transaction is over
+    kDataHeld,         ///< the data line stays low until `clocks` more clocks
+    kDeviceRestarts,   ///< power of the addressed devices fails behind the byte
+  };
+  Kind kind{};
+  std::optional<std::uint8_t> address{};  ///< none: any
+  std::size_t byte = 0;                   ///< 0 is the address, then data bytes
+  Duration duration{};
+  int clocks = 1;
+};
+
+/// A bus at 100 kHz with its devices: who answers, how long everything takes, what can go wrong
+/// with two wires. Devices with the same address answer together: one acknowledgement is enough, a
+/// zero bit wins.
+class Bus {
+ public:
+  static constexpr Duration kBit = std::chrono::microseconds{10};
+  static constexpr Duration kByte = 9 * kBit;
+
+  /// Its number is that of `device`.
+  template <EmulatedBusDevice Device>
+  std::size_t attach(Device device) {
+    devices_.emplace_back(std::move(device));
+    return devices_.size() - 1;
+  }
+  /// Requires a device of that type with that number.
+  template <class Device>
+  [[nodiscard]] Device& device(std::size_t number) {
+    return *devices_.at(number).template as<Device>();
+  }
+  [[nodiscard]] std::size_t device_count() const noexcept { return devices_.size(); }
+
+  /// Each trouble comes once, at the first byte that fits.
+  void expect(Trouble trouble) { troubles_.push_back(trouble); }
+
+  /// A start condition, repeated inside a transaction, and the address.
+  BusReply start(Instant time, std::uint8_t address, bool is_read);
+  BusReply write(Instant time, std::byte byte);
+  /// Devices give a byte when it begins. Ones if nobody is addressed.
+  BusReply read(Instant time);
+  BusReply stop(Instant time);
+  /// Nine clocks and a stop, which free a data line that a device holds in the middle of a byte.
+  BusReply recover(Instant time);
+  void advance_to(Instant time);
+
+ private:
+  [[nodiscard]] std::optional<Trouble> take_trouble(Trouble::Kind kind);
+  [[nodiscard]] BusReply finish(Instant end, BusReply::Outcome outcome, std::byte byte = {});
+  [[nodiscard]] Instant when_clock_is_free(Instant time) const noexcept;
+  void leave_devices(Instant time);
+
+  std::vector<BusDevice> devices_;
+  std::vector<std::size_t> addressed_;  ///< who takes part in the transaction
+  std::vector<Trouble> troubles_;
+  std::uint8_t address_ = 0;
+  std::size_t byte_ = 0;       ///< of the transaction
+  int clocks_to_release_ = 0;  ///< until the data line is free
+  Instant clock_held_until_{};
+};
+
+}  // namespace armjig::i2c

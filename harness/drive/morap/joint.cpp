@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/drive/morap/joint.hpp"
+
+#include <algorithm>
+
+namespace armjig::morap {
+namespace {
+
+constexpr std::uint16_t kHighestRate = 1500;  // Hz; beyond it a node has no time left
+
+bool is_safe(const ControllerSet& set) noexcept {
+  const auto has_some = [](const Coefficients& filter) {
+    return filter.count >= 1 && filter.count <= kMostCoefficients;
+  };
+  return has_some(set.d) && has_some(set.c) && has_some(set.f) && set.rate_hz >= 1 &&
+         set.rate_hz <= kHighestRate;
+}
+
+ControllerKind kind_of(TuneKind kind) noexcept {
+  return kind == TuneKind::kPiSpeed ? ControllerKind::kSpeed : ControllerKind::kPosition;
+}
+
+}  // namespace
+
+std::string_view describe(ProgramOutcome outcome) noexcept {
+  switch (outcome) {
+    case ProgramOutcome::kDone:
+      return "programmed and read back";
+    case ProgramOutcome::kBusFailed:
+      return "the bus failed";
+    case ProgramOutcome::kUnsafe:
+      return "the node must not run such a set: counts are 1 to 4, the rate is 1 to 1500 Hz";
+    case ProgramOutcome::kNotReset:
+      return "the programming status does not go back to nothing";
+    case ProgramOutcome::kRefused:
+      return "the node refuses the parameters";
+    case ProgramOutcome::kNotActive:
+      return "accepted, but the node shows other parameters";
+  }
+  return {};
+}
+
+BusCode Joint::send(const Command& command) { return master_->transmit(address_, encode(command)); }
+
+BusCode Joint::read(CommandId selector, std::span<std::byte> out) {
+  const auto code = send({selector});
+  return code == BusCode::kOk ? master_->receive(address_, out) : code;
+}
+
+Reading<SetBytes> Joint::controller_set(ControllerKind kind) {
+  const auto selector =
+      kind == ControllerKind::kPosition ? CommandId::kReadPositionSet : CommandId::kReadSpeedSet;
+  std::array<std::byte, kLargestSetSize> bytes{};
+  Reading<SetBytes> reading{read(selector, bytes), {}};
+  if (reading.code != BusCode::kOk) return reading;
+  ControllerSet set;
+  if (decode_into(set, bytes)) return reading;  // no set at all; or a tick fell between two bytes
+  const auto size = wire_size(set);
+  std::ranges::copy(Bytes{bytes}.first(size), reading.value.extend(size).begin());
+  return reading;
+}
+
+ProgramResult Joint::program(const ControllerSet& set) {
+  if (!is_safe(set)) return {ProgramOutcome::kUnsafe};
+  auto result = program_verified({CommandId::kProgram, set}, set.kind);
+  if (result.outcome != ProgramOutcome::kDone) return result;
+  const auto sent = encode(set);
+  const auto active = encode(result.active);
+  if (!std::ranges::equal(sent.view(), active.view())) result.outcome = ProgramOutcome::kNotActive;
+  return result;
+}
+
+ProgramResult Joint::tune(const TuneRequest& request) {
+  return program_verified({CommandId::kTune, request}, kind_of(request.kind));
+}
+
+/// The status is sticky: it has to be "nothing" before, so that "success" means this message.
+ProgramResult Joint::program_verified(const Command& command, ControllerKind kind) {
+  const auto failed = [](BusCode code) { return ProgramResult{ProgramOutcome::kBusFailed, code}; };
+  if (const auto code = load_default_controllers(); code != BusCode::kOk) return failed(code);
+  master_->wait(kSettling);
+  const auto before = programming_status();
+  if (before.code != BusCode::kOk) return failed(before.code);
+  if (before.value != ProgrammingStatus::kNothing) return {ProgramOutcome::kNotReset};
+  if (const auto code = send(command); code != BusCode::kOk) return failed(code);
+  const auto after = programming_status();
+  if (after.code != BusCode::kOk) return failed(after.code);
+  if (after.value != ProgrammingStatus::kSuccess) return {ProgramOutcome::kRefused};
+  master_->wait(kSettling);
+  const auto shown = controller_set(kind);
+  if (shown.code != BusCode::kOk) return failed(shown.code);
+  ProgramResult result{ProgramOutcome::kDone, BusCode::kOk, {}};
+  if (decode_into(result.active, shown.value)) return {ProgramOutcome::kNotActive};
+  return result;
+}
+
+}  // namespace armjig::morap

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/core/emulation.hpp"
+#include "harness/link/bus_port.hpp"
+
+namespace armjig {
+
+/// A port to a whole emulated bus, on virtual time. An operation during which the clock is held for
+/// longer than `clock_patience` fails with `kTimedOut`, as adapters do it; lost arbitration and a
+/// data line that is held down with `kBusy`.
+template <EmulatedBus Bus>
+class EmulatedBusPort final : public BusPort {
+ public:
+  static constexpr Duration kClockPatience = std::chrono::milliseconds{25};
+
+  explicit EmulatedBusPort(Bus bus, Duration clock_patience = kClockPatience)
+      : bus_{std::move(bus)}, clock_patience_{clock_patience} {}
+
+  Result<Ack> start(BusAddress address, Access access) override {
+    return as_ack(bus_.start(now_, address.value, access == Access::kRead));
+  }
+  Result<Ack> write(std::byte byte) override { return as_ack(bus_.write(now_, byte)); }
+  Result<std::byte> read(Ack /*reply*/) override {
+    const auto reply = bus_.read(now_);
+    return as_ack(reply).map([&reply](Ack) { return reply.byte; });
+  }
+  Result<void> stop() override {
+    return as_ack(bus_.stop(now_)).map([](Ack) {});
+  }
+  Result<void> recover() override {
+    return as_ack(bus_.recover(now_)).map([](Ack) {});
+  }
+  void wait_until(Instant time) override { now_ = std::max(now_, time); }
+  [[nodiscard]] Instant now() const override { return now_; }
+  [[nodiscard]] Bus& bus() noexcept { return bus_; }
+
+ private:
+  Result<Ack> as_ack(const BusReply& reply) {
+    const auto deadline = now_ + clock_patience_;
+    now_ = std::min(reply.end, deadline);
+    if (reply.end > deadline) return fail(ErrorCode::kTimedOut);
+    switch (reply.outcome) {
+      case BusReply::Outcome::kAck:
+        return Ack::kAck;
+      case BusReply::Outcome::kNack:
+        return Ack::kNack;
+      case BusReply::Outcome::kArbitrationLost:
+      case BusReply::Outcome::kDataHeld:
+        break;
+    }
+    return fail(ErrorCode::kBusy);
+  }
+
+  Bus bus_;
+  Duration clock_patience_;
+  Instant now_{};
+};
+
+}  // namespace armjig
