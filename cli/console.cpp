@@ -17,6 +17,7 @@
 
 #include "cli/command.hpp"
 #include "cli/line_editor.hpp"
+#include "cli/morap_console.hpp"
 #include "cli/pace.hpp"
 #include "cli/parol6_console.hpp"
 #include "cli/screen.hpp"
@@ -265,6 +266,7 @@ class TerminalSession {
 };
 
 Exit console(const Options& options) {
+  if (options.device == "morap") return console_morap(options.target);
   const auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
   auto rig = open_rig(options.device, *how);
@@ -286,7 +288,7 @@ void add_console(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   command->add_option("DEVICE", options->device, "what is there")
       ->required()
-      ->check(CLI::IsMember({"parol6"}));
+      ->check(CLI::IsMember({"morap", "parol6"}));
   add_target_options(*command, options->target);
   command->callback([options, &action] { action = [options] { return console(*options); }; });
 }

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/emulate_bus.hpp"
+#include "emulators/host/buses.hpp"
 #include "emulators/host/devices.hpp"
 #include "emulators/host/host.hpp"
 
@@ -23,6 +25,7 @@ constexpr auto kHelp =
     "  armjig emulate parol6 --tcp 4000             as a byte stream on TCP, this machine only\n"
     "  armjig emulate parol6 --tcp 0 --pty --json   both, any free port, for scripts\n"
     "  armjig emulate parol6 --set fault=swap-bytes:speed.j1   a faulty one\n"
+    "  armjig emulate morap --set nodes=1,2 --set bus=1        nodes on a virtual /dev/i2c-1\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
@@ -45,6 +48,7 @@ std::string all_devices() {
     if (!names.empty()) names += ", ";
     names += entry.device;
   }
+  for (const auto& entry : hosted_buses()) names += ", " + std::string{entry.device};
   return names;
 }
 
@@ -101,6 +105,10 @@ Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) 
 Exit emulate(const Options& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
+  if (const auto* bus = find_hosted_bus(options.device)) {
+    return emulate_bus(*bus, *settings,
+                       options.wants_json ? Announcement::kJson : Announcement::kText);
+  }
   auto device = make_hosted_device(options.device, *settings);
   if (!device) return report(device.error());
   auto host = Host::open(std::move(*device), host_options(options));
