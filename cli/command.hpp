@@ -33,8 +33,12 @@ void add_devices(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_emulate(CLI::App& app, Action& action);
 void add_i2c(CLI::App& app, Action& action);
+void add_kin(CLI::App& app, Action& action);
 void add_lab(CLI::App& app, Action& action);
 void add_morap(CLI::App& app, Action& action);
+void add_plan(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_script(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_watch(CLI::App& app, Action& action);
 

@@ -2,13 +2,20 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/conformance_mutants.hpp"
 #include "cli/target_options.hpp"
+#include "conformance/run.hpp"
 #include "conformance/suite.hpp"
+#include "harness/report/diff.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -19,84 +26,212 @@ constexpr auto kHelp =
     "  armjig conformance parol6 --target emulated:          the emulator, in virtual time\n"
     "  armjig conformance parol6 --target pty:/tmp/parol6    whatever is behind that terminal\n"
     "  armjig conformance parol6 --target 'emulated:?fault=swap-bytes:speed.j1'   a faulty board\n"
-    "  armjig conformance parol6 --list                      the cases, one a line\n"
+    "  armjig conformance parol6 --list                      the requirements, one a line\n"
     "  armjig conformance parol6 --explain parol6.frame.burst\n"
+    "  armjig conformance diff before.json after.json        what a change has done\n"
     "\n"
-    "Nothing in it moves a joint. With --allow state it also switches the two outputs; it leaves\n"
-    "them off.";
+    "On a device that is not emulated only what cannot move or switch anything is run; --allow\n"
+    "adds the rest. Clear the space around the arm before --allow move,home.";
 
 struct Options {
   std::string device;
   TargetOptions target;
-  Selection selection;
+  std::string profile = "firmware";
+  std::string tier = "full";
+  std::string shard = "1/1";
+  std::string waivers;
   std::string explain;
+  RunOptions run;
   ReportFiles files;
   bool list = false;
 };
 
-Exit list_cases(const Suite& suite, const Selection& selection) {
+bool is_listed(const Requirement& requirement, const Options& options) {
+  return requirement.id.find(options.run.selection.filter) != std::string_view::npos;
+}
+
+Exit list_requirements(const Suite& suite, const Options& options) {
   int listed = 0;
-  for (const auto& one : suite.cases) {
-    if (!is_selected(selection, one)) continue;
-    ++listed;
-    fmt::print("{:<36} {}\n", one.id, one.rule);
+  for (const auto& chapter : suite.chapters) {
+    for (const auto& requirement : chapter.requirements) {
+      if (!is_listed(requirement, options)) continue;
+      ++listed;
+      fmt::print("{:<44} {:<6} {:<6} {:<10} {}\n", requirement.id, to_string(requirement.level),
+                 to_string(requirement.role), to_string(requirement.profiles), requirement.text);
+    }
   }
-  return listed > 0 ? Exit::kPassed : Exit::kNothing;
+  if (listed > 0) return Exit::kPassed;
+  (void)report({ErrorCode::kBadValue, "--filter " + options.run.selection.filter,
+                "it selects no requirement; --list without it shows all"});
+  return Exit::kNothing;
+}
+
+/// The requirement of that name, or of the case of that name.
+const Requirement* requirement_named(const Suite& suite, const std::string& name) {
+  if (const auto* requirement = find_requirement(suite, name)) return requirement;
+  for (const auto& chapter : suite.chapters) {
+    const auto one = std::ranges::find(chapter.cases, name, name_of);
+    if (one != chapter.cases.end()) return &requirement_of(suite, *one);
+  }
+  return nullptr;
 }
 
 Exit explain(const Suite& suite, const std::string& name) {
-  bool is_known = false;
-  for (const auto& requirement : suite.requirements) {
-    const bool is_meant = name.starts_with(requirement.id);
-    if (!is_meant) continue;
-    is_known = true;
-    fmt::print("{} ({})\n  {}\n  source: {}\n", requirement.id, to_string(requirement.level),
-               requirement.text, requirement.source);
-    for (const auto& one : suite.cases) {
-      if (one.requirement == requirement.id) fmt::print("  case {}: {}\n", one.id, one.rule);
+  const auto* requirement = requirement_named(suite, name);
+  if (requirement == nullptr) {
+    return report({ErrorCode::kBadValue, "--explain " + name, "--list shows the names"});
+  }
+  fmt::print("{} ({}, {}, profile {})\n  {}\n  source: {}\n", requirement->id,
+             to_string(requirement->level), to_string(requirement->role),
+             to_string(requirement->profiles), requirement->text, requirement->source);
+  if (!requirement->instead.empty()) {
+    fmt::print("  the other profile instead: {}\n", requirement->instead);
+  }
+  for (const auto& chapter : suite.chapters) {
+    for (const auto& one : chapter.cases) {
+      if (one.requirement != requirement->id) continue;
+      fmt::print("  case {}: {} (from: {}; --allow {})\n", name_of(one), one.rule,
+                 suite.starts[one.start].name, to_string(one.hazard));
     }
   }
-  if (is_known) return Exit::kPassed;
-  return report({ErrorCode::kBadValue, "--explain " + name, "--list shows the names"});
+  return Exit::kPassed;
 }
 
-Exit run(const Suite& suite, const Options& options) {
-  const auto how = parse_target_options(options.target);
+std::chrono::year_month_day today() {
+  return std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
+}
+
+/// Reads what the parser left as words.
+Outcome<void> complete(const Suite& suite, Options& options) {
+  options.run.profile = options.profile == "documented" ? Profile::kDocumented : Profile::kFirmware;
+  options.run.selection.tier = options.tier == "quick" ? Tier::kQuick : Tier::kFull;
+  const auto shard = parse_shard(options.shard);
+  if (!shard) return tl::unexpected{shard.error()};
+  options.run.selection.shard = *shard;
+  if (options.waivers.empty()) return {};
+  auto waivers = read_waivers(options.waivers, suite, today());
+  if (!waivers) return tl::unexpected{waivers.error()};
+  options.run.waivers = *std::move(waivers);
+  return {};
+}
+
+/// The command line that does this again, but for the filter.
+std::string command_of(const Options& options) {
+  auto text = fmt::format("armjig conformance {} --target '{}'{}", options.device,
+                          options.target.target, to_arguments(options.target));
+  if (options.run.profile != Profile::kFirmware)
+    text += fmt::format(" --profile {}", options.profile);
+  if (options.run.seed != RunOptions{}.seed) text += fmt::format(" --seed {}", options.run.seed);
+  return text;
+}
+
+/// In one line what was not run, and why; nothing if everything was.
+void print_skipped(const Report& result) {
+  std::map<std::string, int> reasons;
+  for (const auto& row : result.rows) {
+    if (row.verdict == Verdict::kSkipped) ++reasons[row.actual];
+  }
+  if (reasons.empty()) return;
+  std::string text;
+  for (const auto& [reason, count] : reasons) text += fmt::format("; {} {}", count, reason);
+  fmt::print("skipped: {}\n", text.substr(2));
+}
+
+Exit run(const Suite& suite, Options options) {
+  auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
-  auto rig = open_rig(suite.device, *how);
-  if (!rig) return report(rig.error());
-  auto selection = options.selection;
-  selection.permissions = how->permissions;
-  selection.arguments = to_arguments(options.target);
-  auto result = run_suite(suite, rig->port(), how->target, selection, [](const ReportRow& row) {
+  const bool names_profile = how->target.options.contains("profile");
+  if (how->target.is_emulated() && !names_profile && options.run.profile != Profile::kFirmware) {
+    how->target.options["profile"] = options.profile;
+  }
+  const auto bench = suite.open(*how);
+  if (!bench) return report(bench.error());
+  options.run.permissions = how->target.is_emulated() ? Permissions::all() : how->permissions;
+  options.run.target = how->target.text;
+  options.run.command = command_of(options);
+  const auto started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  auto result = run_suite(suite, **bench, options.run, [](const ReportRow& row) {
     fmt::print("{}", to_text(row));
     std::fflush(stdout);
   });
+  result.started = started;
   if (how->impairment) result.facts.emplace_back("impairment", to_string(*how->impairment));
   fmt::print("{}\n", counts_line(result));
+  print_skipped(result);
   if (const auto written = write_files(result, options.files); !written) {
     return report(written.error());
   }
   return static_cast<Exit>(conclusion_of(result));
 }
 
-Exit conformance(const Options& options) {
-  const auto& suite = *std::ranges::find(suites(), options.device, &Suite::device);
-  if (!options.explain.empty()) return explain(suite, options.explain);
-  const bool selects_nothing = std::ranges::none_of(
-      suite.cases, [&](const Case& one) { return is_selected(options.selection, one); });
-  if (selects_nothing) {
-    (void)report({ErrorCode::kBadValue, "--filter " + options.selection.filter,
-                  "it selects no case; --list shows them"});
+Exit conformance(Options options) {
+  const auto suite = std::ranges::find(suites(), options.device, &Suite::device);
+  if (suite == suites().end()) {
+    std::string names;
+    for (const auto& one : suites()) names += fmt::format(" {}", one.device);
+    return report({ErrorCode::kUnknownDevice, fmt::format("'{}'", options.device),
+                   "say which device:" + names});
+  }
+  if (const auto completed = complete(*suite, options); !completed) {
+    return report(completed.error());
+  }
+  if (!options.explain.empty()) return explain(*suite, options.explain);
+  if (options.list) return list_requirements(*suite, options);
+  if (select(*suite, options.run.profile, options.run.selection).empty()) {
+    const auto& filter = options.run.selection.filter;
+    (void)report({ErrorCode::kBadValue,
+                  filter.empty() ? "--shard " + options.shard : "--filter " + filter,
+                  "no case is selected; --list shows the requirements"});
     return Exit::kNothing;
   }
-  return options.list ? list_cases(suite, options.selection) : run(suite, options);
+  return run(*suite, std::move(options));
 }
 
-std::vector<std::string> device_names() {
-  std::vector<std::string> names;
-  for (const auto& suite : suites()) names.emplace_back(suite.device);
-  return names;
+Outcome<std::string> read_file(const std::string& path) {
+  std::ifstream in{path, std::ios::binary};
+  std::string text{std::istreambuf_iterator<char>{in}, {}};
+  if (!in) return problem(ErrorCode::kCannotRead, path, "check that the file is there");
+  return text;
+}
+
+Exit compare(const std::string& before, const std::string& after) {
+  const auto old_text = read_file(before);
+  if (!old_text) return report(old_text.error());
+  const auto new_text = read_file(after);
+  if (!new_text) return report(new_text.error());
+  const auto diff = compare_reports(*old_text, before, *new_text, after);
+  if (!diff) return report(diff.error());
+  fmt::print("{}", to_text(*diff));
+  return diff->broken.empty() ? Exit::kPassed : Exit::kFindings;
+}
+
+void add_diff(CLI::App& conformance, Action& action) {
+  struct Files {
+    std::string before;
+    std::string after;
+  };
+  auto* command = conformance.add_subcommand(
+      "diff", "Compares two reports that --json wrote: fixed, broken, new.");
+  const auto files = std::make_shared<Files>();
+  command->add_option("BEFORE", files->before, "the report to compare with")->required();
+  command->add_option("AFTER", files->after, "the report in question")->required();
+  command->callback(
+      [files, &action] { action = [files] { return compare(files->before, files->after); }; });
+}
+
+void add_report_files(CLI::App& command, ReportFiles& files) {
+  struct Form {
+    const char* option;
+    std::string* path;
+    const char* what;
+  };
+  for (const auto& [option, path, what] :
+       {Form{"--json", &files.json, "JSON"}, Form{"--html", &files.html, "a page"},
+        Form{"--junit", &files.junit, "JUnit XML"}, Form{"--sarif", &files.sarif, "SARIF"}}) {
+    command
+        .add_option(option, *path, fmt::format("also write the report to this file as {}", what))
+        ->type_name("FILE");
+  }
 }
 
 }  // namespace
@@ -104,17 +239,32 @@ std::vector<std::string> device_names() {
 void add_conformance(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("conformance", kHelp);
   const auto options = std::make_shared<Options>();
-  command->add_option("DEVICE", options->device, "which suite")
-      ->required()
-      ->check(CLI::IsMember(device_names()));
+  command->add_option("DEVICE", options->device, "which suite");
   add_target_options(*command, options->target);
-  command->add_option("--filter", options->selection.filter, "only cases with this in their name");
+  command
+      ->add_option("--profile", options->profile,
+                   "whose expectations, and which device behind emulated:")
+      ->check(CLI::IsMember({"firmware", "documented"}));
+  command->add_option("--filter", options->run.selection.filter, "only what has this in its name");
+  command->add_option("--tier", options->tier, "quick leaves out what takes long")
+      ->check(CLI::IsMember({"quick", "full"}));
+  command->add_option("--seed", options->run.seed, "for bytes that may be any");
+  command->add_option("--repeat", options->run.repeat, "run each case so often")
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--shard", options->shard, "only one part of several, as in 2/4");
+  command->add_flag("--fail-fast", options->run.stops_at_first_failure,
+                    "run nothing more once a case has failed");
+  command->add_option("--waivers", options->waivers, "a file that excuses requirements")
+      ->type_name("FILE");
   command->add_option("--explain", options->explain, "say what a requirement demands, and why");
-  command->add_option("--json", options->files.json, "also write the report to this file as JSON");
-  command->add_option("--html", options->files.html,
-                      "also write the report to this file as a page");
-  command->add_flag("--list", options->list, "name the cases and stop");
-  command->callback([options, &action] { action = [options] { return conformance(*options); }; });
+  add_report_files(*command, options->files);
+  command->add_flag("--list", options->list, "name the requirements and stop");
+  add_diff(*command, action);
+  add_conformance_mutants(*command, action);
+  command->callback([options, command, &action] {
+    if (!command->get_subcommands().empty()) return;
+    action = [options] { return conformance(*options); };
+  });
 }
 
 }  // namespace armjig::cli

@@ -2,17 +2,23 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/emulate_bus.hpp"
+#include "conformance/program_check.hpp"
 #include "emulators/host/buses.hpp"
 #include "emulators/host/devices.hpp"
 #include "emulators/host/host.hpp"
+#include "emulators/host/session_host.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -26,10 +32,14 @@ constexpr auto kHelp =
     "  armjig emulate parol6 --tcp 0 --pty --json   both, any free port, for scripts\n"
     "  armjig emulate parol6 --set fault=swap-bytes:speed.j1   a faulty one\n"
     "  armjig emulate morap --set nodes=1,2 --set bus=1        nodes on a virtual /dev/i2c-1\n"
+    "  armjig emulate parol6 --check                tells what the client program does wrong\n"
+    "  armjig emulate kinovazed                     a server on its own TCP port, 51717\n"
+    "  armjig emulate kinovazed --tcp 0 --set objectives=my.json\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
-    "that is how a server ends.";
+    "that is how a server ends. With --check what the program does wrong is said at once on\n"
+    "standard error, and at the end as a report on standard output; findings exit with 1.";
 
 struct Options {
   std::string device;
@@ -40,15 +50,18 @@ struct Options {
   TcpOptions tcp;
   double speed = 1;
   bool wants_json = false;
+  bool wants_check = false;
+  ReportFiles files;
 };
 
 std::string all_devices() {
   std::string names;
+  for (const auto& entry : hosted_servers()) names += std::string{entry.device} + ", ";
   for (const auto& entry : hosted_devices()) {
-    if (!names.empty()) names += ", ";
-    names += entry.device;
+    names += std::string{entry.device} + ", ";
   }
-  for (const auto& entry : hosted_buses()) names += ", " + std::string{entry.device};
+  for (const auto& entry : hosted_buses()) names += std::string{entry.device} + ", ";
+  names.resize(names.size() - 2);
   return names;
 }
 
@@ -102,21 +115,107 @@ Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) 
   return options;
 }
 
+/// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
+constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
+/// What is broken in every frame need not be said a hundred times a second.
+constexpr std::size_t kMostLines = 3;
+
+Outcome<std::unique_ptr<ProgramCheck>> make_check(const Options& options) {
+  const auto entries = program_checks();
+  const auto entry = std::ranges::find(entries, options.device, &ProgramCheckEntry::device);
+  if (entry == entries.end()) {
+    return problem(ErrorCode::kBadValue, "--check",
+                   "nothing is demanded of programs for " + options.device);
+  }
+  const LinkNoise noise{std::chrono::duration_cast<Duration>(kSchedulingNoise * options.speed)};
+  auto lines = std::make_shared<std::map<std::string_view, std::size_t>>();
+  return std::make_unique<ProgramCheck>(*entry, noise, [lines](const Offence& offence) {
+    if (++(*lines)[offence.requirement] > kMostLines) return;
+    fmt::print(stderr, "armjig: {:.3f} s {}: {}\n",
+               std::chrono::duration<double>{offence.time.time_since_epoch()}.count(),
+               offence.requirement, offence.what);
+  });
+}
+
+Exit conclude(ProgramCheck& check, const Options& options) {
+  const auto result = check.finish();
+  fmt::print("{}\n", options.wants_json ? to_json(result) : to_text(result));
+  if (const auto written = write_files(result, options.files); !written) {
+    return report(written.error());
+  }
+  return static_cast<Exit>(conclusion_of(result));
+}
+
+Exit emulate_server(const ServerEntry& entry, const Options& options,
+                    const DeviceOptions& settings) {
+  if (options.wants_pty || !options.pty.link.empty()) {
+    return report(
+        Problem{ErrorCode::kBadValue, options.device,
+                "it is a TCP server and has no pseudo-terminal; leave out --pty, --link"});
+  }
+  auto server = entry.make(settings, options.device);
+  if (!server) return report(server.error());
+  SessionHostOptions host_options{.tcp = options.tcp, .speed = options.speed};
+  if (!options.wants_tcp) host_options.tcp.port = entry.port;
+  host_options.on_signal = HostOptions::OnSignal::kStop;
+  host_options.log = [](std::string_view line) { fmt::print(stderr, "armjig: {}\n", line); };
+  auto host = SessionHost::open(std::move(*server), host_options);
+  if (!host) return report(host.error());
+  announce(options, {host->target()});
+  host->run();
+  print_statistics(host->statistics());
+  return Exit::kPassed;
+}
+
 Exit emulate(const Options& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
   if (const auto* bus = find_hosted_bus(options.device)) {
+    const bool has_others = options.wants_pty || !options.pty.link.empty() || options.wants_tcp ||
+                            options.speed != 1 || options.wants_check;
+    if (has_others) {
+      return report({ErrorCode::kBadValue, options.device,
+                     "a bus takes --set and --json, and no other option"});
+    }
     return emulate_bus(*bus, *settings,
                        options.wants_json ? Announcement::kJson : Announcement::kText);
   }
+  for (const auto& entry : hosted_servers()) {
+    if (entry.device == options.device) return emulate_server(entry, options, *settings);
+  }
   auto device = make_hosted_device(options.device, *settings);
   if (!device) return report(device.error());
+  std::unique_ptr<ProgramCheck> check;
+  if (options.wants_check) {
+    auto made = make_check(options);
+    if (!made) return report(made.error());
+    check = *std::move(made);
+    device = check->watch(*std::move(device));
+  }
   auto host = Host::open(std::move(*device), host_options(options));
   if (!host) return report(host.error());
   announce(options, host->targets());
   host->run();
   print_statistics(host->statistics());
-  return Exit::kPassed;
+  return check ? conclude(*check, options) : Exit::kPassed;
+}
+
+void add_check(CLI::App& command, Options& options) {
+  auto* check =
+      command.add_flag("--check", options.wants_check, "judge the program that talks to it");
+  struct Form {
+    const char* option;
+    std::string* path;
+    const char* what;
+  };
+  for (const auto& [option, path, what] : {Form{"--html", &options.files.html, "a page"},
+                                           Form{"--junit", &options.files.junit, "JUnit XML"},
+                                           Form{"--sarif", &options.files.sarif, "SARIF"}}) {
+    command
+        .add_option(option, *path, fmt::format("also write the report to this file as {}", what))
+        ->type_name("FILE")
+        ->needs(check);
+  }
 }
 
 }  // namespace
@@ -146,7 +245,9 @@ void add_emulate(CLI::App& app, Action& action) {
       ->add_option("--set", options->settings,
                    "an option of the device, as in emulated: targets; may be repeated")
       ->type_name("NAME=VALUE");
-  command->add_flag("--json", options->wants_json, "say where it listens as one line of JSON");
+  command->add_flag("--json", options->wants_json,
+                    "say where it listens as one line of JSON; the report of --check too");
+  add_check(*command, *options);
   command->callback([options, tcp, &action] {
     options->wants_tcp = tcp->count() > 0;
     action = [options] { return emulate(*options); };

@@ -11,6 +11,7 @@
 
 #include "cli/morap_arguments.hpp"
 #include "cli/morap_view.hpp"
+#include "emulators/host/buses.hpp"
 #include "harness/drive/morap/parameter_file.hpp"
 
 namespace armjig::cli {
@@ -91,7 +92,8 @@ const std::vector<MorapConsole::Command>& MorapConsole::commands() {
          if (!(seconds >= 0.0F && seconds <= kLongest)) {
            return c.say_(Tone::kUnreadable, "from 0 to 3600 seconds");
          }
-         c.master_.wait(std::chrono::round<Duration>(std::chrono::duration<float>{seconds}));
+         c.waits_until_ =
+             c.master_.now() + std::chrono::round<Duration>(std::chrono::duration<float>{seconds});
        }},
       {"help", "", "this list", 0, 0,
        [](Console& c, const Words&) {
@@ -109,12 +111,23 @@ const std::vector<MorapConsole::Command>& MorapConsole::commands() {
   return kCommands;
 }
 
-MorapConsole::MorapConsole(BusRig& rig, Say say)
-    : rig_{rig}, say_{std::move(say)}, master_{rig.port()}, joint_{master_, {node_address(2)}} {}
+MorapConsole::MorapConsole(BusRig rig, Say say)
+    : rig_{std::move(rig)},
+      say_{std::move(say)},
+      master_{rig_.port()},
+      joint_{master_, {node_address(2)}} {}
 
-int MorapConsole::node() const noexcept { return joint_.address().value - kNodeBaseAddress; }
+Outcome<void> MorapConsole::cycle() {
+  constexpr Duration kPeriod = std::chrono::milliseconds{10};
+  master_.wait(kPeriod);
+  return {};
+}
 
-void MorapConsole::run(std::string_view line) {
+std::string MorapConsole::occupation() {
+  return fmt::format("node {}", joint_.address().value - kNodeBaseAddress);
+}
+
+void MorapConsole::begin(std::string_view line) {
   std::istringstream in{std::string{line.substr(0, line.find('#'))}};
   Words words;
   for (std::string word; in >> word;) words.push_back(word);
@@ -175,6 +188,7 @@ void MorapConsole::do_pen(const Words& words) {
 
 /// At the end, and when somebody is frightened.
 void MorapConsole::stop() {
+  waits_until_ = {};
   for (const auto address : std::exchange(moved_, {})) {
     if (Joint{master_, address}.disable() == BusCode::kOk) continue;
     say_(Tone::kFailed, fmt::format("node {} cannot be disabled: it may be moving",
@@ -207,13 +221,20 @@ bool MorapConsole::number(const std::string& word, float& value) {
   return false;
 }
 
-std::vector<std::string> MorapConsole::candidates(std::string_view line) {
+std::vector<std::string> MorapConsole::candidates(std::string_view line) const {
   std::vector<std::string> names;
   if (line.find(' ') != std::string_view::npos) return names;
   for (const auto& command : commands()) {
     if (command.name.starts_with(line)) names.push_back(std::string{command.name} + ' ');
   }
   return names;
+}
+
+Outcome<std::unique_ptr<DeviceConsole>> open_morap_console(const RigOptions& how,
+                                                           const std::string& /*target*/, Say say) {
+  auto rig = BusRig::open("morap", how, find_hosted_bus("morap")->open);
+  if (!rig) return tl::unexpected{rig.error()};
+  return std::make_unique<MorapConsole>(*std::move(rig), std::move(say));
 }
 
 }  // namespace armjig::cli

@@ -1,39 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "cli/bus_session.hpp"
-#include "cli/parol6_console.hpp"
+#include "cli/device_console.hpp"
 #include "harness/drive/morap/joint.hpp"
+#include "harness/rig/bus_rig.hpp"
 
 namespace armjig::cli {
 
-/// The commands of `armjig console morap`: each is done when `run` returns. They are for one node,
+/// The commands of `armjig console morap`. All but `wait` are done at once. They are for one node,
 /// which `node` changes.
-class MorapConsole {
+class MorapConsole final : public DeviceConsole {
  public:
-  using Say = std::function<void(Tone, std::string_view)>;
+  MorapConsole(BusRig rig, Say say);
 
-  /// The rig outlives the console.
-  MorapConsole(BusRig& rig, Say say);
-  MorapConsole(const MorapConsole&) = delete;
-  MorapConsole& operator=(const MorapConsole&) = delete;
-  ~MorapConsole() = default;
+  [[nodiscard]] Outcome<void> cycle() override;
+  void begin(std::string_view line) override;
+  [[nodiscard]] bool is_busy() const noexcept override { return master_.now() < waits_until_; }
+  [[nodiscard]] bool wants_to_quit() const noexcept override { return wants_to_quit_; }
+  /// Disables every node that was told to move, and ends a `wait`.
+  void stop() override;
+  /// The node that commands are for.
+  [[nodiscard]] std::string occupation() override;
+  [[nodiscard]] std::vector<std::string> candidates(std::string_view line) const override;
+  [[nodiscard]] Instant now() override { return master_.now(); }
 
-  /// Does a command; what is blank or a comment does nothing.
-  void run(std::string_view line);
-  /// Disables every node that was told to move.
-  void stop();
-  [[nodiscard]] bool wants_to_quit() const noexcept { return wants_to_quit_; }
-  [[nodiscard]] int node() const noexcept;
-  [[nodiscard]] morap::Master& master() noexcept { return master_; }
-
-  /// What may stand where the last word of `line` begins.
-  [[nodiscard]] static std::vector<std::string> candidates(std::string_view line);
+  // A bus is there as soon as it is open; nodes are heard when they are asked.
+  [[nodiscard]] bool hears_the_device() const noexcept override { return true; }
+  [[nodiscard]] Duration hears_within() const noexcept override { return {}; }
+  [[nodiscard]] std::string_view silence() const noexcept override { return {}; }
 
  private:
   using Words = std::vector<std::string>;
@@ -47,15 +46,18 @@ class MorapConsole {
   void tell(const morap::ProgramResult& result);
   bool number(const std::string& word, float& value);
 
-  BusRig& rig_;
+  BusRig rig_;
   Say say_;
   morap::Master master_;
   morap::Joint joint_;
   std::vector<BusAddress> moved_;
+  Instant waits_until_{};
   bool wants_to_quit_ = false;
 };
 
-/// The console on a terminal or from a pipe.
-[[nodiscard]] Exit console_morap(const TargetOptions& target);
+/// The console's entry.
+[[nodiscard]] Outcome<std::unique_ptr<DeviceConsole>> open_morap_console(const RigOptions& how,
+                                                                         const std::string& target,
+                                                                         Say say);
 
 }  // namespace armjig::cli

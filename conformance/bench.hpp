@@ -2,52 +2,82 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
-#include <memory>
+#include <cstdint>
 #include <optional>
+#include <random>
 #include <string>
 
+#include "conformance/requirement.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
-#include "harness/link/stream_port.hpp"
-#include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
-/// A conversation with a device on a stream, for the body of a conformance case. The same calls
-/// mean the same in virtual and in real time. Once the port has failed, sending does nothing and
-/// nothing arrives any more; the engine sees `error` and blames the rig, not the device.
+/// What a case found. `expected` and `actual` are sentences; `actual` is also the reason why
+/// something was skipped or showed nothing.
+struct Judgement {
+  Verdict verdict = Verdict::kPass;
+  std::string expected{};
+  std::string actual{};
+  bool is_silence = false;  ///< nothing was wrong but that an ordinary answer did not come
+};
+
+/// What a case works on: a conversation with one device, on whatever link that has. Each suite has
+/// its own kind, with the vocabulary of its protocol; this is what the engine needs of all.
+///
+/// The first finding decides a case. From then on everything that the body does is without effect,
+/// so that bodies are straight lines without a way out in the middle.
 class Bench {
  public:
-  Bench(StreamPort& port, const DissectorEntry& device);
+  Bench() = default;
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+  virtual ~Bench() = default;
 
-  void send(Bytes bytes);
+  /// Asks for a sign of life and leaves nothing half said behind. False: there is none.
+  [[nodiscard]] virtual bool is_alive() = 0;
 
-  /// The next message of the device, or bytes that are none; waits at most `within`.
-  [[nodiscard]] std::optional<Message> receive(Duration within);
+  /// Brings the device to the state `start` of its suite. Does nothing if it is there already.
+  /// What stands in the way is a finding of its own.
+  virtual void bring_to(std::size_t start) = 0;
 
-  /// Lets time pass. What arrives meanwhile stays to be received.
-  void pause(Duration duration);
+  /// Learns how much later than needed answers come here. Called once, before the first case.
+  virtual void measure_noise() = 0;
+  /// The most that was seen then; in virtual time what the device itself takes.
+  [[nodiscard]] virtual Duration noise() const = 0;
 
-  /// Forgets what has arrived, until nothing more came for `quiet`.
-  void drain(Duration quiet);
+  /// The link's own clock, virtual or real.
+  [[nodiscard]] virtual Instant now() const = 0;
+  /// Why the link is gone; none as long as it is there.
+  [[nodiscard]] virtual const std::optional<Error>& error() const = 0;
+  /// The last few messages both ways, oldest first, decoded; none from before `begin`.
+  [[nodiscard]] virtual std::string last_exchange() const = 0;
 
-  [[nodiscard]] Instant now() const { return port_.now(); }
-  [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
+  /// Begins a case or what comes before one.
+  void begin(Profile profile, std::uint64_t seed);
+  [[nodiscard]] const Judgement& judgement() const noexcept { return judgement_; }
 
-  /// The last few messages both ways, oldest first, decoded. Starts anew with `forget_exchange`.
-  [[nodiscard]] std::string last_exchange() const;
-  void forget_exchange() noexcept { exchange_.clear(); }
+  /// Whether it is decided already.
+  [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+  [[nodiscard]] Profile profile() const noexcept { return profile_; }
+  /// For bytes that may be any. The same for the same seed and case, whichever others ran before.
+  [[nodiscard]] std::uint32_t random() { return static_cast<std::uint32_t>(random_()); }
+
+  void fail(std::string expected, std::string actual);
+  void fail_by_silence(std::string expected, std::string actual);
+  void skip(std::string reason);
+  void leave_open(std::string reason);  ///< inconclusive
+
+ protected:
+  virtual void forget_exchange() = 0;
 
  private:
-  void read_until(Instant deadline);
-  void remember(const Message& message);
+  void decide(Judgement judgement);
 
-  StreamPort& port_;
-  std::unique_ptr<Dissector> dissector_;
-  std::deque<Message> arrived_;
-  std::deque<Message> exchange_;
-  std::optional<Error> error_;
+  Profile profile_{};
+  Judgement judgement_;
+  bool is_over_ = false;
+  std::mt19937 random_;
 };
 
 }  // namespace armjig

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/demo/suite.hpp"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
+#include "conformance/stream_bench.hpp"
+#include "emulators/host/devices.hpp"
 #include "harness/wire/demo/demo.hpp"
 
 namespace armjig::demo {
@@ -12,50 +16,78 @@ using namespace std::chrono_literals;
 
 constexpr std::array kRequirements{
     Requirement{"demo.query", Level::kMust, "A query is answered with the state.", "made up here"},
+    Requirement{"demo.start", Level::kMust, "A device that is told to start runs.", "made up here"},
     Requirement{"demo.halt.while-halted", Level::kMust,
                 "A device told to halt while halted stays halted.", "made up here"},
 };
 
-/// The field that says the state, in any reply.
-const Field& state_field() { return reply_fields()[1]; }
+/// The vocabulary: operations out, states back.
+class MachineBench final : public StreamBench {
+ public:
+  explicit MachineBench(Rig rig)
+      : StreamBench{std::move(rig),
+                    *std::ranges::find(dissectors(), "demo", &DissectorEntry::device)} {}
 
-Judgement expect_state(Bench& bench, State state) {
-  const auto reply = bench.receive(100ms);
-  const auto wanted = field_text(state_field(), static_cast<std::int64_t>(state));
-  if (!reply) return fail(wanted, "silence");
-  if (!reply->fault.empty()) return fail(wanted, reply->fault);
-  const auto value = field_value(state_field(), reply->raw);
-  if (value == static_cast<std::int64_t>(state)) return pass();
-  return fail(wanted, field_text(state_field(), value));
+  bool is_alive() override {
+    drain(10ms);
+    send(encode(Operation::kQuery));
+    return receive(100ms).has_value();
+  }
+  void bring_to(std::size_t /*start*/) override {
+    send(encode(Operation::kHalt));
+    expect_state(State::kHalted);
+  }
+  void measure_noise() override {}
+  [[nodiscard]] Duration noise() const override { return {}; }
+
+  void expect_state(State state) {
+    const auto& field = reply_fields()[1];
+    const auto wanted = field_text(field, static_cast<std::int64_t>(state));
+    const auto reply = receive(100ms);
+    if (!reply) return fail_by_silence(wanted, "silence");
+    if (!reply->fault.empty()) return fail(wanted, reply->fault);
+    const auto value = field_value(field, reply->raw);
+    if (value != static_cast<std::int64_t>(state)) fail(wanted, field_text(field, value));
+  }
+};
+
+void query(MachineBench& machine) {
+  machine.send(encode(Operation::kQuery));
+  machine.expect_state(State::kHalted);
+}
+
+void start(MachineBench& machine) {
+  machine.send(encode(Operation::kStart));
+  machine.expect_state(State::kRunning);
+}
+
+void halt_twice(MachineBench& machine) {
+  machine.send(encode(Operation::kHalt));
+  machine.expect_state(State::kHalted);
 }
 
 constexpr std::array kCases{
-    Case{.id = "demo.query",
-         .requirement = "demo.query",
-         .rule = "A halted device says so.",
-         .run =
-             [](Bench& bench) {
-               bench.send(encode(Operation::kQuery));
-               return expect_state(bench, State::kHalted);
-             }},
-    Case{.id = "demo.halt.while-halted",
-         .requirement = "demo.halt.while-halted",
+    Case{.requirement = "demo.query", .rule = "A halted device says so.", .run = on<query>},
+    Case{.requirement = "demo.start",
+         .rule = "A halted device can be started.",
+         .run = on<start>,
+         .hazard = Hazard::kMove},
+    Case{.requirement = "demo.halt.while-halted",
          .rule = "Halting twice is the same as once.",
-         .run =
-             [](Bench& bench) {
-               bench.send(encode(Operation::kHalt));
-               return expect_state(bench, State::kHalted);
-             }},
+         .run = on<halt_twice>},
 };
 
-bool prepare(Bench& bench) {
-  bench.drain(10ms);
-  bench.send(encode(Operation::kHalt));
-  return bench.receive(100ms).has_value();
+constexpr std::array kStarts{StartState{"halted", Hazard::kObserve}};
+constexpr std::array kChapters{Chapter{"The machine", kRequirements, kCases}};
+
+Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
+  auto rig = Rig::open("demo", how, hosted_device("demo").open);
+  if (!rig) return tl::unexpected{rig.error()};
+  return std::make_unique<MachineBench>(*std::move(rig));
 }
 
 }  // namespace
 
-Suite suite() noexcept { return {"demo", kRequirements, kCases, prepare}; }
+Suite suite() noexcept { return {"demo", "1", kChapters, kStarts, open}; }
 
 }  // namespace armjig::demo

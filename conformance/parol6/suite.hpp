@@ -5,7 +5,7 @@
 
 namespace armjig::parol6 {
 
-/// Framing and telemetry of the PAROL6 board, profile `firmware`. Nothing here moves a joint.
+/// The PAROL6 control board, and the programs that talk to it.
 [[nodiscard]] Suite suite() noexcept;
 
 }  // namespace armjig::parol6

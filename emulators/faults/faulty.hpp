@@ -3,85 +3,102 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
+#include <iterator>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "emulators/faults/fault.hpp"
 #include "harness/core/emulation.hpp"
-#include "harness/core/error.hpp"
-#include "harness/wire/field.hpp"
 
 namespace armjig {
 
-/// A defect that a real board could have, put on an emulated one to see it found.
-struct Fault {
-  enum class Kind : std::uint8_t {
-    kZero,         ///< the field is always 0
-    kStuck,        ///< the field keeps its first value
-    kOffByOne,     ///< the field is one too high
-    kSwapBytes,    ///< the field has its least significant byte first
-    kReverseBits,  ///< each byte of the field has its bit order turned round
-    kLosesSplits,  ///< a message that does not arrive in one piece is lost
-  };
-  Kind kind{};
-  const Field* field{};  ///< none for `kLosesSplits`
-};
-
-/// Reads `KIND:FIELD` or `KIND`, for example `swap-bytes:speed.j1` or `loses-splits`. Fields are
-/// those of what the device sends.
-[[nodiscard]] Outcome<Fault> parse_fault(std::string_view text, std::span<const Field> fields);
-
-/// The forms that `parse_fault` takes, for help texts.
-[[nodiscard]] std::string fault_forms();
-
-/// Changes one message as the fault demands. `first` remembers what `kStuck` needs.
-void apply_fault(const Fault& fault, std::span<std::byte> message,
-                 std::optional<std::int64_t>& first) noexcept;
-
-/// A device on a stream with defects. Needs a device that sends whole messages.
+/// A device on a stream with defects in what it sends. Needs a device that sends whole messages.
 template <EmulatedStream Device>
 class Faulty {
  public:
+  /// `message_size`: of what the device receives.
   Faulty(Device device, std::vector<Fault> faults, std::size_t message_size)
       : device_{std::move(device)},
         faults_{std::move(faults)},
-        firsts_(faults_.size()),
+        memories_(faults_.size()),
         message_size_{message_size} {}
 
   void receive(Instant time, Bytes bytes) {
-    const bool loses_splits = std::ranges::any_of(
-        faults_, [](const Fault& fault) { return fault.kind == Fault::Kind::kLosesSplits; });
-    const auto kept = loses_splits ? bytes.size() / message_size_ * message_size_ : bytes.size();
+    const auto kept = has(Fault::Kind::kLosesSplits) ? bytes.size() / message_size_ * message_size_
+                                                     : bytes.size();
     device_.receive(time, bytes.first(kept));
     take_sent();
+    release(time);
   }
   void advance_to(Instant time) {
     device_.advance_to(time);
     take_sent();
+    release(time);
   }
-  [[nodiscard]] std::optional<Instant> next_event() const { return device_.next_event(); }
+  [[nodiscard]] std::optional<Instant> next_event() const {
+    auto next = device_.next_event();
+    for (const auto& message : held_) {
+      if (!next || message.time < *next) next = message.time;
+    }
+    return next;
+  }
   [[nodiscard]] std::span<const SentBytes> sent() const noexcept { return sent_; }
   void clear_sent() noexcept { sent_.clear(); }
 
+  bool set_input(Instant time, std::string_view input, std::int64_t value)
+    requires requires(Device device) { device.set_input(time, input, value); }
+  {
+    return device_.set_input(time, input, value);
+  }
+
  private:
+  static constexpr int kOneIn = 10;
+  static constexpr Duration kLateness = std::chrono::milliseconds{20};
+  static constexpr Duration kRepeatAfter = std::chrono::milliseconds{100};
+
+  [[nodiscard]] bool has(Fault::Kind kind) const noexcept {
+    return std::ranges::find(faults_, kind, &Fault::kind) != faults_.end();
+  }
+
   void take_sent() {
     for (auto message : device_.sent()) {
       for (std::size_t i = 0; i < faults_.size(); ++i) {
-        apply_fault(faults_[i], message.bytes, firsts_[i]);
+        apply_fault(faults_[i], message.bytes, memories_[i]);
       }
-      sent_.push_back(std::move(message));
+      hold(std::move(message));
     }
     device_.clear_sent();
   }
 
+  /// Applies the faults of messages.
+  void hold(SentBytes message) {
+    const bool is_chosen = ++messages_ % kOneIn == 0;
+    if (is_chosen && has(Fault::Kind::kMissing)) return;
+    if (is_chosen && has(Fault::Kind::kCutShort)) message.bytes.pop_back();
+    if (has(Fault::Kind::kLate)) message.time += kLateness;
+    held_.push_back(message);
+    if (is_chosen && has(Fault::Kind::kTwice)) held_.push_back(message);
+    if (!is_chosen || !has(Fault::Kind::kUnasked)) return;
+    message.time += kRepeatAfter;
+    held_.push_back(std::move(message));
+  }
+
+  /// Lets go what is due.
+  void release(Instant time) {
+    const auto is_due = [time](const SentBytes& message) { return message.time <= time; };
+    std::ranges::copy_if(held_, std::back_inserter(sent_), is_due);
+    std::erase_if(held_, is_due);
+  }
+
   Device device_;
   std::vector<Fault> faults_;
-  std::vector<std::optional<std::int64_t>> firsts_;
-  std::size_t message_size_;  ///< of what the device receives
+  std::vector<std::optional<std::int64_t>> memories_;  ///< one for each fault
+  std::size_t message_size_;
+  int messages_ = 0;
+  std::vector<SentBytes> held_;  ///< not sent yet
   std::vector<SentBytes> sent_;
 };
 

@@ -5,17 +5,30 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "emulators/demo/demo.hpp"
+#include "emulators/faults/faulty.hpp"
+#include "emulators/host/kinovazed_options.hpp"
 #include "emulators/host/parol6_options.hpp"
 #include "harness/link/memory_stream.hpp"
 
 namespace armjig {
 namespace {
 
-Outcome<demo::StreamDevice> make_demo(const DeviceOptions& options, const std::string& where) {
-  if (options.empty()) return demo::StreamDevice{};
-  return problem(ErrorCode::kUnknownOption, where, "the demo device has no options");
+Outcome<Faulty<demo::StreamDevice>> make_demo(const DeviceOptions& options,
+                                              const std::string& where) {
+  std::vector<Fault> faults;
+  for (const auto& [name, value] : options) {
+    if (name == "profile" && (value == "firmware" || value == "documented")) continue;
+    if (name != "fault") {
+      return problem(ErrorCode::kUnknownOption, where, "the demo device has profile and fault");
+    }
+    const auto fault = parse_fault(value, demo::reply_fields());
+    if (!fault) return tl::unexpected{fault.error()};
+    faults.push_back(*fault);
+  }
+  return Faulty{demo::StreamDevice{}, std::move(faults), demo::kMessageSize};
 }
 
 /// A device behind a link of the operating system.
@@ -45,18 +58,29 @@ constexpr std::array kDevices{
     entry<parol6::make_arm>("parol6"),
 };
 
+Outcome<std::unique_ptr<HostedServer>> host_kinovazed(const DeviceOptions& options,
+                                                      const std::string& where) {
+  auto server = kinovazed::make_server(options, where);
+  if (!server) return tl::unexpected{server.error()};
+  return make_hosted_server(*std::move(server));
+}
+
+constexpr std::array kServers{ServerEntry{"kinovazed", host_kinovazed, 51717}};
+
 std::string all_names() {
   std::string names;
+  for (const auto& entry : kServers) names += std::string{entry.device} + ", ";
   for (const auto& entry : kDevices) {
-    if (!names.empty()) names += ", ";
-    names += entry.device;
+    names += std::string{entry.device} + ", ";
   }
+  names.resize(names.size() - 2);
   return names;
 }
 
 }  // namespace
 
 std::span<const HostEntry> hosted_devices() noexcept { return kDevices; }
+std::span<const ServerEntry> hosted_servers() noexcept { return kServers; }
 
 const HostEntry& hosted_device(std::string_view device) noexcept {
   return *std::ranges::find(kDevices, device, &HostEntry::device);

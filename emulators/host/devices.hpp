@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "emulators/host/hosted_server.hpp"
 #include "emulators/host/hosted_stream.hpp"
 #include "harness/core/error.hpp"
 #include "harness/rig/target.hpp"
@@ -23,6 +25,17 @@ struct HostEntry {
 
 /// All of them. This is the room's one list of devices.
 [[nodiscard]] std::span<const HostEntry> hosted_devices() noexcept;
+
+/// A server that can be hosted on TCP; `make` as above.
+struct ServerEntry {
+  std::string_view device;
+  Outcome<std::unique_ptr<HostedServer>> (*make)(const DeviceOptions& options,
+                                                 const std::string& where);
+  std::uint16_t port;  ///< on which clients look for it
+};
+
+/// All of them: devices that know connections and not just bytes.
+[[nodiscard]] std::span<const ServerEntry> hosted_servers() noexcept;
 
 /// The entry of a device that has one.
 [[nodiscard]] const HostEntry& hosted_device(std::string_view device) noexcept;

@@ -5,8 +5,45 @@
 #include <variant>
 
 namespace armjig::parol6 {
+namespace {
 
-Arm::Arm(const ArmOptions& options) : board_{options.plant, options.timing} {
+constexpr std::string_view kPosition = "position.j";
+constexpr std::string_view kSwitch = "switch.j";
+
+/// The joint that a name like `switch.j1` ends with; none if it does not.
+std::optional<std::size_t> joint_of(std::string_view name, std::string_view prefix) noexcept {
+  if (!name.starts_with(prefix) || name.size() != prefix.size() + 1) return std::nullopt;
+  const auto joint = static_cast<std::size_t>(name.back() - '1');
+  return joint < kJointCount ? std::optional{joint} : std::nullopt;
+}
+
+bool set_in_plant(Plant& plant, std::string_view name, std::int64_t value) noexcept {
+  struct NamedInput {
+    std::string_view name;
+    Level Inputs::* level;
+  };
+  for (const auto& [input, level] :
+       {NamedInput{"estop", &Inputs::estop}, {"in1", &Inputs::in1}, {"in2", &Inputs::in2}}) {
+    if (name != input) continue;
+    plant.inputs.*level = value != 0 ? Level::kHigh : Level::kLow;
+    return true;
+  }
+  if (const auto joint = joint_of(name, kPosition)) {
+    plant.axes[*joint].position = Steps{static_cast<std::int32_t>(value)};
+    return true;
+  }
+  if (const auto joint = joint_of(name, kSwitch)) {
+    if (value < 0 || value > 2) return false;
+    plant.axes[*joint].switch_state = Axis::SwitchState{static_cast<std::uint8_t>(value)};
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Arm::Arm(const ArmOptions& options)
+    : board_{options.plant, options.timing, options.profile, options.figures} {
   if (options.gripper) gripper_.emplace(*options.gripper);
 }
 
@@ -54,6 +91,25 @@ void Arm::take_emissions() {
 void Arm::touch_gripper(Instant time, const GripperPlant& plant) {
   advance_before(time);
   if (gripper_) gripper_->touch(time, plant);
+}
+
+bool Arm::set_input(Instant time, std::string_view name, std::int64_t value) {
+  if (name == "power") {
+    reboot(time);
+    return true;
+  }
+  if (name == "between-fingers") {
+    if (!gripper_) return false;
+    auto fingers = gripper_->plant();
+    fingers.stop_closing.reset();
+    if (value >= 0) fingers.stop_closing = static_cast<std::uint8_t>(value);
+    touch_gripper(time, fingers);
+    return true;
+  }
+  auto plant = board_.plant();
+  if (!set_in_plant(plant, name, value)) return false;
+  touch(time, [&](Plant& touched) { (void)set_in_plant(touched, name, value); });
+  return true;
 }
 
 void Arm::reboot(Instant time) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,8 @@ namespace armjig::parol6 {
 struct ArmOptions {
   Plant plant = standard_plant();
   BoardTiming timing{};
+  BoardProfile profile = kFirmwareBoard;
+  BoardFigures figures{};
   std::optional<GripperOptions> gripper = GripperOptions{};  ///< none: nothing is on the CAN
 };
 
@@ -50,6 +54,12 @@ class Arm {
   }
   /// The same for what the fingers meet. Without a gripper nothing happens.
   void touch_gripper(Instant time, const GripperPlant& plant);
+
+  /// What a person beside the arm can do, by name: `estop`, `in1`, `in2` (levels, as in
+  /// recordings), `position.j1` (puts the axis there), `switch.j1` (0 works, 1 stuck closed, 2
+  /// stuck open), `between-fingers` (position byte of something that the gripper meets on closing,
+  /// -1 nothing), `power` (off and on, whatever the value). False: there is no such thing.
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
 
   /// Power off and on for board and gripper; axes and fingers stay where they are.
   void reboot(Instant time);

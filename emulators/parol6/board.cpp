@@ -3,28 +3,20 @@
 
 #include <algorithm>
 
+#include "harness/wire/parol6/joint_bounds.hpp"
+#include "harness/wire/parol6/readings.hpp"
+
 namespace armjig::parol6 {
 namespace {
 
-constexpr StepRate kMaxSpeed{50'000};  // parol6.jog.clamp
 constexpr std::array<StepsPerSecond2, kJointCount> kPowerUpAcceleration{
     StepsPerSecond2{1000}, StepsPerSecond2{1000}, StepsPerSecond2{500},
     StepsPerSecond2{500},  StepsPerSecond2{500},  StepsPerSecond2{100}};
 
-/// The built-in two-leg demonstration.
-struct DemoParameters {
-  float max_speed_and_acceleration{};  ///< steps/s and steps/s^2
-  Steps out{};
-  Steps back{};
-};
-constexpr std::array<DemoParameters, kJointCount> kDemoTable{{{6000, Steps{6179}, Steps{10240}},
-                                                              {4000, Steps{-22222}, Steps{-32000}},
-                                                              {3500, Steps{49812}, Steps{57905}},
-                                                              {3500, Steps{0}, Steps{0}},
-                                                              {3500, Steps{4059}, Steps{0}},
-                                                              {7500, Steps{46075}, Steps{32000}}}};
 constexpr std::int64_t kDemoSleepUs = 2'000'000;
 constexpr std::int64_t kStartUpUs = 740'000;
+
+constexpr Milliamperes kMaxGripperCurrent{1300};
 
 // Telemetry that the firmware never computes.
 constexpr std::uint8_t kSpareFlags = 0x03;
@@ -36,12 +28,14 @@ constexpr GripperReport kGripperAtPowerUp{.id = 0,
                                           .status = 1,
                                           .object_detection = 1};
 
-std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant) noexcept {
+std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant, const BoardProfile& profile,
+                                                  const BoardFigures& figures) noexcept {
   std::array<Joint, kJointCount> joints;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     joints[j].axis = plant.axes[j];
-    joints[j].pressed_level = kHomingTable[j].pressed_level;
-    joints[j].stepper.set_max_speed(kMaxSpeed);
+    joints[j].pressed_level = figures.homing[j].pressed_level;
+    joints[j].stepper.set_max_speed(profile.bounds_speeds ? to_rate(kJointBounds[j].max_speed)
+                                                          : figures.max_speed);
     joints[j].stepper.set_acceleration(kPowerUpAcceleration[j]);
     joints[j].stepper.set_speed(StepRate{});
   }
@@ -54,10 +48,15 @@ constexpr Instant instant(std::int64_t pass) noexcept {
 
 }  // namespace
 
-Board::Board(const Plant& plant, const BoardTiming& timing)
-    : timing_{timing},
-      joints_{joints_at_power_up(plant)},
+Board::Board(const Plant& plant, const BoardTiming& timing, const BoardProfile& profile,
+             const BoardFigures& figures)
+    : profile_{profile},
+      figures_{figures},
+      timing_{timing},
+      joints_{joints_at_power_up(plant, profile, figures)},
       inputs_{plant.inputs},
+      homing_{figures.homing},
+      receiver_{profile},
       gripper_{kGripperAtPowerUp} {}
 
 void Board::receive(Instant time, Bytes bytes) {
@@ -89,7 +88,7 @@ void Board::reboot(Instant time) {
   const auto now_us = microseconds(time);
   auto sent = std::move(sent_);
   const auto was_plain = uses_plain_loop_;
-  *this = Board{plant(), timing_};
+  *this = Board{plant(), timing_, profile_, figures_};
   sent_ = std::move(sent);
   uses_plain_loop_ = was_plain;
   start_ = next_pass_ = now_us + kStartUpUs;
@@ -105,6 +104,7 @@ Plant Board::plant() const noexcept {
 void Board::set_plant(const Plant& plant) noexcept {
   for (std::size_t j = 0; j < kJointCount; ++j) joints_[j].axis = plant.axes[j];
   inputs_ = plant.inputs;
+  outlook_ = Outlook::kOpen;
 }
 
 std::uint32_t Board::timer(std::int64_t pass) const noexcept {
@@ -120,8 +120,9 @@ Micros Board::clock(std::int64_t pass) const noexcept {
 
 void Board::run_passes(std::int64_t last) {
   while (next_pass_ <= last) {
+    if (next_pass_ > silence_ends_) watch_silence();
     const bool must_communicate = is_waiting_for_pass();
-    auto pass = coast(must_communicate ? next_pass_ : last);
+    auto pass = coast(must_communicate ? next_pass_ : std::min(last, silence_ends_));
     if (pass == kNoPass) {
       pass = next_pass_;
       if (control(pass) == Next::kSleep) {
@@ -170,6 +171,7 @@ Board::Outlook Board::outlook() const noexcept {
         break;
       case Motion::kSpeed:
       case Motion::kGoTo:
+        if (profile_.stops_at_bounds) return Outlook::kOpen;
         outlook = std::max(outlook, Outlook::kSteady);
         break;
       case Motion::kSeek:
@@ -194,9 +196,16 @@ Board::Next Board::control(std::int64_t pass) {
 }
 
 Board::Next Board::act(Micros now) {
+  if (is_stopped_by_hand()) {
+    end_homing();
+    is_enabled_ = false;
+  }
+  if (is_silent_) return Next::kCommunicate;
+  if (latched_.command != Command::kHome) is_home_served_ = false;
   switch (latched_.command) {
     case Command::kDemo:
-      return demo(now);
+      if (profile_.has_demo) return demo(now);
+      break;
     case Command::kIdle:
       if (home_wanted_ && is_enabled_ && !home_finished_) {
         home(now);
@@ -206,38 +215,30 @@ Board::Next Board::act(Micros now) {
       demo_leg_ = DemoLeg::kWaiting;
       break;
     case Command::kEnable:
+      end_homing();
       homing_.reset();
-      home_wanted_ = false;
-      is_enabled_ = true;
+      is_enabled_ = !is_stopped_by_hand();
       break;
     case Command::kDisable:
-      home_wanted_ = false;
+      end_homing();
       is_enabled_ = false;
       break;
     case Command::kClearError:
-      home_wanted_ = false;
+      end_homing();
       homing_.reset();
+      position_errors_ = 0;
       break;
     case Command::kHome:
-      if (!is_enabled_) break;
+      if (!is_enabled_ || is_home_served_) break;
       home_wanted_ = true;
       home_finished_ = false;
       home(now);
       break;
     case Command::kJog:
-      if (!is_enabled_) break;
-      stop_homing();
-      for (std::size_t j = 0; j < kJointCount; ++j) {
-        joints_[j].stepper.set_speed(to_rate(latched_.speed[j]));
-        joints_[j].run_speed(now);
-      }
+      if (is_enabled_) jog(now);
       break;
     case Command::kGoTo:
-      if (!is_enabled_) break;
-      stop_homing();
-      for (std::size_t j = 0; j < kJointCount; ++j) {
-        joints_[j].go_to(now, latched_.position[j], latched_.speed[j]);
-      }
+      if (is_enabled_) go_to(now);
       break;
   }
   return Next::kCommunicate;  // any other code: nothing steps, set speeds stay as they are
@@ -253,19 +254,69 @@ void Board::idle() noexcept {
     return;
   }
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    joints_[j].stepper.set_speed(to_rate(latched_.speed[j]));
+    joints_[j].stepper.set_speed(profile_.rests_when_idle ? StepRate{}
+                                                          : to_rate(latched_.speed[j]));
   }
 }
 
 void Board::home(Micros now) noexcept {
   const auto change = homing_.pass(joints_, now);
   is_settled_ = change == Homing::Change::kNone;
-  if (change == Homing::Change::kFinished) home_finished_ = true;
+  if (change != Homing::Change::kFinished) return;
+  home_finished_ = true;
+  is_home_served_ = profile_.homes_once && latched_.command == Command::kHome;
 }
 
-void Board::stop_homing() noexcept {
+/// What the shipped board keeps of a homing that is interrupted, `Homing` knows.
+void Board::end_homing() noexcept {
+  const bool interrupts = home_wanted_ && !home_finished_;
   home_wanted_ = false;
+  if (!interrupts || !profile_.homes_afresh) return;
+  homing_.forget();
+  for (auto& joint : joints_) joint.stepper.set_speed(StepRate{});
+}
+
+void Board::jog(Micros now) noexcept {
+  end_homing();
   home_finished_ = true;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    auto& joint = joints_[j];
+    const auto speed = latched_.speed[j];
+    joint.stepper.set_speed(is_held_at_bound(j, speed) ? StepRate{} : to_rate(speed));
+    joint.run_speed(now);
+  }
+}
+
+void Board::go_to(Micros now) noexcept {
+  end_homing();
+  home_finished_ = true;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    auto& joint = joints_[j];
+    const auto goal = latched_.position[j];
+    const auto feed = latched_.speed[j];
+    const auto speed = go_to_speed(joint.position(), goal, feed);
+    if (is_held_at_bound(j, StepsPerSecond{static_cast<std::int32_t>(speed.value)})) {
+      joint.stepper.set_speed(StepRate{});
+    } else {
+      joint.go_to(now, goal, feed);
+    }
+  }
+}
+
+bool Board::is_held_at_bound(std::size_t joint, StepsPerSecond speed) const noexcept {
+  return profile_.stops_at_bounds && are_all_homed(homing_.homed()) &&
+         kJointBounds[joint].forbid(joints_[joint].position(), speed);
+}
+
+bool Board::is_stopped_by_hand() const noexcept {
+  return profile_.disables_at_estop && inputs_.estop == Level::kLow;
+}
+
+/// The pass comes too late for the command that is latched.
+void Board::watch_silence() noexcept {
+  is_silent_ = true;
+  silence_ends_ = kNoPass;
+  outlook_ = Outlook::kOpen;
 }
 
 /// parol6.demo: also runs while disabled. A leg that ends lets the next one begin in the same pass.
@@ -277,14 +328,14 @@ Board::Next Board::demo(Micros now) noexcept {
   if (demo_leg_ == DemoLeg::kWaiting) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       auto& stepper = joints_[j].stepper;
-      stepper.set_max_speed(StepRate{kDemoTable[j].max_speed_and_acceleration});
-      stepper.set_acceleration(StepsPerSecond2{kDemoTable[j].max_speed_and_acceleration});
-      stepper.move_to(kDemoTable[j].out);
+      stepper.set_max_speed(StepRate{figures_.demo[j].max_speed_and_acceleration});
+      stepper.set_acceleration(StepsPerSecond2{figures_.demo[j].max_speed_and_acceleration});
+      stepper.move_to(figures_.demo[j].out);
     }
     demo_leg_ = DemoLeg::kOut;
   }
   if (demo_leg_ == DemoLeg::kOut && !run_all(now)) {
-    for (std::size_t j = 0; j < kJointCount; ++j) joints_[j].stepper.move_to(kDemoTable[j].back);
+    for (std::size_t j = 0; j < kJointCount; ++j) joints_[j].stepper.move_to(figures_.demo[j].back);
     is_asleep_ = true;
     is_settled_ = false;
     return Next::kSleep;
@@ -308,30 +359,38 @@ void Board::communicate(std::int64_t pass) {
     take_gripper_answer(can_waiting_.front());
     can_waiting_.erase(can_waiting_.begin());
   }
-  auto rest = Bytes{bytes_waiting_};
-  while (!rest.empty()) {
-    const auto step = receiver_.step(rest);
-    rest = rest.subspan(step.used);
-    if (step.accepted) accept(pass);
+  std::size_t used = 0;
+  while (used < bytes_waiting_.size()) {
+    const auto step = receiver_.step(Bytes{bytes_waiting_}.subspan(used));
+    used += step.used;
+    if (!step.body) continue;
+    accept(pass, *step.body);
+    if (profile_.acts_on_each_frame) break;
   }
-  bytes_waiting_.clear();
+  bytes_waiting_.erase(bytes_waiting_.begin(),
+                       bytes_waiting_.begin() + static_cast<std::ptrdiff_t>(used));
 }
 
-void Board::accept(std::int64_t pass) {
+void Board::accept(std::int64_t pass, CommandReceiver::Body body) {
   const auto timer_now = timer(pass);
   const auto interval = static_cast<std::uint16_t>(timer_now - timer_at_frame_);
   timer_at_frame_ = timer_now;
-  if (!std::ranges::equal(receiver_.body(), latched_body_)) {
-    std::ranges::copy(receiver_.body(), latched_body_.begin());
+  if (!std::ranges::equal(body, latched_body_)) {
+    std::ranges::copy(body, latched_body_.begin());
     latched_ = decode_command(latched_body_);
     outlook_ = Outlook::kOpen;
   }
   send_gripper_frame(pass);
   send_telemetry(pass, interval);
+  if (!profile_.minds_silence) return;
+  if (is_silent_) outlook_ = Outlook::kOpen;
+  is_silent_ = false;
+  silence_ends_ = latched_.timeout == 0 ? kNoPass : pass + std::int64_t{latched_.timeout} * 1000;
 }
 
-/// Exactly one CAN frame for each accepted serial frame. What arrives together with a calibration
-/// or a clear-error counts as sent although it was not (parol6.gripper.forgotten-set-point).
+/// Exactly one CAN frame for each accepted serial frame. To the shipped board, what arrives
+/// together with a calibration or a clear-error counts as sent although it was not
+/// (parol6.gripper.forgotten-set-point).
 void Board::send_gripper_frame(std::int64_t pass) {
   constexpr std::uint8_t kMove = 0;
   constexpr std::uint8_t kCalibrate = 1;
@@ -352,11 +411,15 @@ void Board::send_gripper_frame(std::int64_t pass) {
       frame.size = 5;
       frame.data[0] = static_cast<std::byte>(wanted.position);
       frame.data[1] = static_cast<std::byte>(wanted.speed);
-      store_i16_be(std::span{frame.data}.subspan<2, 2>(), wanted.current.value);
+      const auto current = profile_.bounds_current
+                               ? std::clamp(wanted.current, Milliamperes{0}, kMaxGripperCurrent)
+                               : wanted.current;
+      store_i16_be(std::span{frame.data}.subspan<2, 2>(), current.value);
       frame.data[4] = static_cast<std::byte>(wanted.command);
     }
   }
-  gripper_sent_ = wanted;
+  const bool is_sent = wanted.mode != kCalibrate && wanted.mode != kClearError;
+  if (is_sent || !profile_.remembers_set_points) gripper_sent_ = wanted;
   sent_.emplace_back(instant(pass), frame);
 }
 
@@ -385,12 +448,33 @@ void Board::send_telemetry(std::int64_t pass, std::uint16_t interval) {
              (latched_.in_out & (io_flag::kOut1 | io_flag::kOut2)) |
              level_flag(inputs_.estop, io_flag::kEstopReleased) | io_flag::kSpare;
   frame.temperature_error = kSpareFlags;
-  frame.position_error = kSpareFlags;
+  if (profile_.reports_position_errors) position_errors_ |= joints_out_of_range();
+  frame.position_error = position_errors_ | kSpareFlags;
   frame.timing = interval;
-  frame.timeout_error = kTimeoutError;
+  frame.timeout_error = profile_.minds_silence ? std::uint8_t{is_silent_} : kTimeoutError;
   frame.echo = latched_.command;
-  frame.gripper = gripper_;
+  frame.gripper = gripper_report();
   sent_.emplace_back(instant(pass), encode(frame));
+}
+
+GripperReport Board::gripper_report() const noexcept {
+  auto report = gripper_;
+  if (profile_.reports_gripper) {
+    report.id = latched_.gripper.id;
+    report.speed = latched_.gripper.speed;
+    report.object_detection = static_cast<std::uint8_t>(object_of(gripper_.status));
+  }
+  return report;
+}
+
+/// Counters are robot coordinates only when all joints are homed.
+std::uint8_t Board::joints_out_of_range() const noexcept {
+  if (!are_all_homed(homing_.homed())) return 0;
+  std::uint8_t flags = 0;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (!kJointBounds[j].contain(joints_[j].position())) flags |= flag(j);
+  }
+  return flags;
 }
 
 }  // namespace armjig::parol6

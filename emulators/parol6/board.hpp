@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "emulators/parol6/can.hpp"
+#include "emulators/parol6/command_receiver.hpp"
+#include "emulators/parol6/figures.hpp"
 #include "emulators/parol6/homing.hpp"
 #include "emulators/parol6/joint.hpp"
 #include "emulators/parol6/plant.hpp"
+#include "emulators/parol6/profile.hpp"
 #include "harness/core/bytes.hpp"
 #include "harness/core/time.hpp"
-#include "harness/wire/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
 namespace armjig::parol6 {
@@ -36,8 +38,9 @@ struct Emission {
   std::variant<TelemetryBytes, CanFrame> what;
 };
 
-/// The PAROL6 control board with the shipped firmware, byte for byte, on a virtual clock. A regular
-/// value: a copy is a snapshot. Same inputs at the same times give the same bytes.
+/// The PAROL6 control board on a virtual clock: with `kFirmwareBoard` the shipped one, byte for
+/// byte, otherwise one that differs from it as its profile says. A regular value: a copy is a
+/// snapshot. Same inputs at the same times give the same bytes.
 ///
 /// The firmware is one endless loop. In a pass, time stands still: it acts on the last command,
 /// then takes at most one CAN frame, then reads all bytes that have come and answers every frame
@@ -45,7 +48,8 @@ struct Emission {
 /// steps and frames, not passes.
 class Board {
  public:
-  explicit Board(const Plant& plant, const BoardTiming& timing = {});
+  explicit Board(const Plant& plant, const BoardTiming& timing = {},
+                 const BoardProfile& profile = kFirmwareBoard, const BoardFigures& figures = {});
 
   /// Bytes that become readable at `time`. Runs the passes before `time` first. Times of all
   /// inputs and of `advance_to` must not decrease.
@@ -81,6 +85,8 @@ class Board {
   [[nodiscard]] std::span<const Joint, kJointCount> joints() const noexcept { return joints_; }
   [[nodiscard]] const Homing& homing() const noexcept { return homing_; }
   [[nodiscard]] bool is_enabled() const noexcept { return is_enabled_; }
+  /// Told to home, and not there yet.
+  [[nodiscard]] bool is_homing() const noexcept { return home_wanted_ && !home_finished_; }
   [[nodiscard]] std::uint8_t outputs() const noexcept { return latched_.in_out; }
 
   /// For tests and benchmarks: computes every pass by itself, as the firmware does.
@@ -111,21 +117,30 @@ class Board {
   [[nodiscard]] std::int64_t coast(std::int64_t last);
   void idle() noexcept;
   void home(Micros now) noexcept;
+  void jog(Micros now) noexcept;
+  void go_to(Micros now) noexcept;
+  [[nodiscard]] bool is_held_at_bound(std::size_t joint, StepsPerSecond speed) const noexcept;
   [[nodiscard]] Next demo(Micros now) noexcept;
   [[nodiscard]] bool run_all(Micros now) noexcept;
-  void stop_homing() noexcept;
+  void end_homing() noexcept;
+  [[nodiscard]] bool is_stopped_by_hand() const noexcept;
+  void watch_silence() noexcept;
 
   // The link and the gripper's bus.
   void communicate(std::int64_t pass);
-  void accept(std::int64_t pass);
+  void accept(std::int64_t pass, CommandReceiver::Body body);
   void send_gripper_frame(std::int64_t pass);
   void take_gripper_answer(const CanFrame& frame) noexcept;
   void send_telemetry(std::int64_t pass, std::uint16_t interval);
+  [[nodiscard]] GripperReport gripper_report() const noexcept;
+  [[nodiscard]] std::uint8_t joints_out_of_range() const noexcept;
 
   [[nodiscard]] std::uint32_t timer(std::int64_t pass) const noexcept;
   [[nodiscard]] Micros clock(std::int64_t pass) const noexcept;
   void set_plant(const Plant& plant) noexcept;
 
+  BoardProfile profile_;
+  BoardFigures figures_;
   BoardTiming timing_;
   std::int64_t start_ = 0;      ///< virtual microseconds at which the main loop was entered
   std::int64_t next_pass_ = 0;  ///< virtual microseconds
@@ -143,13 +158,19 @@ class Board {
   bool home_wanted_ = false;
   bool home_finished_ = false;
   Homing homing_;
+  bool is_home_served_ = false;  ///< with `homes_once`: done, and the same command is still latched
   DemoLeg demo_leg_ = DemoLeg::kWaiting;
   bool is_asleep_ = false;   ///< the demo sleeps in the middle of a pass
   bool is_settled_ = false;  ///< the last pass would repeat itself
   Outlook outlook_ = Outlook::kOpen;
   bool uses_plain_loop_ = false;
 
-  FirmwareReceiver receiver_;
+  // Of profiles that mind them.
+  std::int64_t silence_ends_ = kNoPass;  ///< the last pass in which a command still acts
+  bool is_silent_ = false;               ///< no frame came in time
+  std::uint8_t position_errors_ = 0;     ///< `flag(joint)`
+
+  CommandReceiver receiver_;
   GripperReport gripper_{};
   std::vector<std::byte> bytes_waiting_;
   std::vector<CanFrame> can_waiting_;

@@ -53,7 +53,7 @@ void Homing::begin(std::array<Joint, kJointCount>& joints) noexcept {
   stages_.has_begun = true;
   homed_ = 0;
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    joints[j].stepper.set_speed(kHomingTable[j].seek_speed);
+    joints[j].stepper.set_speed(table_[j].seek_speed);
   }
 }
 
@@ -71,15 +71,14 @@ void Homing::seek(Joint& joint, bool& seen, Micros now) noexcept {
 
 void Homing::base_pass(std::array<Joint, kJointCount>& joints, Micros now) noexcept {
   const auto base = std::span{joints}.first<kBaseJoints>();
-  const auto all_at = [&base](Steps HomingParameters::* target) {
-    return std::ranges::all_of(base, [&](const Joint& joint) {
-      return joint.position() ==
-             kHomingTable[static_cast<std::size_t>(&joint - base.data())].*target;
+  const auto all_at = [&base, this](Steps HomingParameters::* target) {
+    return std::ranges::all_of(base, [&, this](const Joint& joint) {
+      return joint.position() == table_[static_cast<std::size_t>(&joint - base.data())].*target;
     });
   };
   if (all(std::span{seen_slow_}.first<kBaseJoints>())) {
     for (std::size_t j = 0; j < kBaseJoints; ++j) {
-      final_move(base[j], kHomingTable[j].acceleration, kHomingTable[j].standby_from_switch, now);
+      final_move(base[j], table_[j].acceleration, table_[j].standby_from_switch, now);
     }
     if (all_at(&HomingParameters::standby_from_switch)) {
       for (const auto j : {kJ1, kJ2, kJ3}) mark_homed(j);
@@ -93,12 +92,12 @@ void Homing::base_pass(std::array<Joint, kJointCount>& joints, Micros now) noexc
     }
   }
   if (all(std::span{seen_}.first<kBaseJoints>()) && !stages_.base_slow_seek) {
-    for (std::size_t j = 0; j < kBaseJoints; ++j) back_off(base[j], kHomingTable[j], now);
+    for (std::size_t j = 0; j < kBaseJoints; ++j) back_off(base[j], table_[j], now);
     if (all_at(&HomingParameters::back_off_target)) {
       stages_.base_slow_seek = true;
       noticed_ = true;
       for (std::size_t j = 0; j < kBaseJoints; ++j) {
-        base[j].stepper.set_speed(kHomingTable[j].slow_seek_speed);
+        base[j].stepper.set_speed(table_[j].slow_seek_speed);
       }
     }
   }
@@ -115,10 +114,10 @@ void Homing::wrist_pass(std::array<Joint, kJointCount>& joints, Micros now) noex
   auto& j6 = joints[kJ6];
   if (stages_.j6_parked) {
     if (seen_slow_[kJ5] && !stages_.j5_done) {
-      final_move(j5, kHomingTable[kJ5].acceleration, kHomingTable[kJ5].standby_from_switch, now);
-      final_move(j6, kHomingTable[kJ6].acceleration, kHomingTable[kJ6].standby_from_switch, now);
-      if (j5.position() == kHomingTable[kJ5].standby_from_switch &&
-          j6.position() == kHomingTable[kJ6].standby_from_switch) {
+      final_move(j5, table_[kJ5].acceleration, table_[kJ5].standby_from_switch, now);
+      final_move(j6, table_[kJ6].acceleration, table_[kJ6].standby_from_switch, now);
+      if (j5.position() == table_[kJ5].standby_from_switch &&
+          j6.position() == table_[kJ6].standby_from_switch) {
         for (const auto j : {kJ5, kJ6}) mark_homed(j);
         stages_.j5_done = true;
         noticed_ = true;
@@ -139,8 +138,8 @@ void Homing::wrist_pass(std::array<Joint, kJointCount>& joints, Micros now) noex
     single_pass(j6, kJ6, now);
   }
   if (seen_slow_[kJ4] && !stages_.j4_done) {
-    final_move(j4, kHomingTable[kJ4].acceleration, kHomingTable[kJ4].standby_from_switch, now);
-    if (j4.position() == kHomingTable[kJ4].standby_from_switch) {
+    final_move(j4, table_[kJ4].acceleration, table_[kJ4].standby_from_switch, now);
+    if (j4.position() == table_[kJ4].standby_from_switch) {
       mark_homed(kJ4);
       stages_.j4_done = true;
       noticed_ = true;
@@ -152,7 +151,7 @@ void Homing::wrist_pass(std::array<Joint, kJointCount>& joints, Micros now) noex
 
 /// Slow seek, back-off and seek of a joint that homes alone. None of them looks at "done".
 void Homing::single_pass(Joint& joint, std::size_t j, Micros now) noexcept {
-  const auto& homing = kHomingTable[j];
+  const auto& homing = table_[j];
   auto& slow_seek = stages_.slow_seek[j];
   if (slow_seek && !seen_slow_[j]) seek(joint, seen_slow_[j], now);
   if (seen_[j] && !slow_seek) {
@@ -168,11 +167,9 @@ void Homing::single_pass(Joint& joint, std::size_t j, Micros now) noexcept {
 
 void Homing::finish(std::array<Joint, kJointCount>& joints) noexcept {
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    joints[j].stepper.set_position(kHomingTable[j].standby);
+    joints[j].stepper.set_position(table_[j].standby);
   }
-  seen_ = {};
-  seen_slow_ = {};
-  stages_ = {};
+  forget();
 }
 
 }  // namespace armjig::parol6

@@ -20,11 +20,15 @@ struct HomingParameters {
   StepsPerSecond2 acceleration{};
   Steps standby_from_switch{};  ///< end of the final move
   Steps standby{};              ///< what the counter is set to there
+
+  friend bool operator==(const HomingParameters&, const HomingParameters&) = default;
 };
+
+using HomingTable = std::array<HomingParameters, kJointCount>;
 
 /// docs/spec/parol6.md, "Homing". The final move of J6 first parks at `kParkingJ6`, out of the way
 /// of J5.
-inline constexpr std::array<HomingParameters, kJointCount> kHomingTable{{
+inline constexpr HomingTable kHomingTable{{
     {Level::kLow, StepRate{-2050}, Steps{850}, StepRate{-2050}, StepRate{-750},
      StepsPerSecond2{4500}, Steps{13500}, Steps{10240}},
     {Level::kHigh, StepRate{-2550}, Steps{1050}, StepRate{2050}, StepRate{-750},
@@ -53,11 +57,20 @@ class Homing {
     kFinished,  ///< all joints stand at standby
   };
 
+  explicit Homing(const HomingTable& table) noexcept : table_{table} {}
+
   /// One pass of the sequencer.
   Change pass(std::array<Joint, kJointCount>& joints, Micros now) noexcept;
 
   /// Forgets the stages, but not which switches were seen.
   void reset() noexcept { stages_ = {}; }
+
+  /// Forgets everything but which joints are homed.
+  void forget() noexcept {
+    reset();
+    seen_ = {};
+    seen_slow_ = {};
+  }
 
   /// `flag(joint)` for each homed one.
   [[nodiscard]] std::uint8_t homed() const noexcept { return homed_; }
@@ -86,6 +99,7 @@ class Homing {
   void mark_homed(std::size_t j) noexcept { homed_ = static_cast<std::uint8_t>(homed_ | flag(j)); }
   void finish(std::array<Joint, kJointCount>& joints) noexcept;
 
+  HomingTable table_;
   Stages stages_{};
   std::array<bool, kJointCount> seen_{};       ///< stage_1: the switch was hit once
   std::array<bool, kJointCount> seen_slow_{};  ///< stage_2: and slowly

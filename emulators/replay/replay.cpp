@@ -5,6 +5,8 @@
 #include <array>
 
 #include "emulators/replay/demo.hpp"
+#include "emulators/replay/kinovazed.hpp"
+#include "emulators/replay/kinovazed_rules.hpp"
 #include "emulators/replay/morap.hpp"
 #include "emulators/replay/parol6.hpp"
 
@@ -13,6 +15,7 @@ namespace {
 
 constexpr std::array kReplays{
     ReplayEntry{"demo", demo::replay},
+    ReplayEntry{"kinovazed", kinovazed::replay, kinovazed::session_difference},
     ReplayEntry{"morap", morap::replay},
     ReplayEntry{"parol6", parol6::replay},
 };
@@ -32,7 +35,7 @@ Outcome<std::optional<TraceDifference>> verify(const Trace& trace) {
   }
   const auto replayed = entry->replay(trace);
   if (!replayed) return tl::unexpected{replayed.error()};
-  return first_difference(replayed->recorded, replayed->actual);
+  return entry->compare(replayed->recorded, replayed->actual);
 }
 
 }  // namespace armjig

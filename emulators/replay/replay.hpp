@@ -17,11 +17,16 @@ struct Replayed {
   std::vector<TraceEvent> actual;    ///< what it sent
 };
 
+/// Where the two first disagree, by the rules that recordings of the device have.
+using Comparison = std::optional<TraceDifference> (*)(const std::vector<TraceEvent>& recorded,
+                                                      const std::vector<TraceEvent>& actual);
+
 /// A device whose recordings can be replayed into an emulator.
 struct ReplayEntry {
   std::string_view device;
   /// Drives a fresh emulator with the stimulus of the recording.
   Outcome<Replayed> (*replay)(const Trace& trace);
+  Comparison compare = first_difference;
 };
 
 /// All of them, by name.

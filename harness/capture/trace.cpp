@@ -102,7 +102,8 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
              : Duration{std::chrono::microseconds{reader.integer("t_us", 0, kLatestMicroseconds)}});
   event.dir = reader.text(dir);
   event.bytes = reader.bytes("hex");
-  event.id = static_cast<std::uint32_t>(reader.integer("id", 0, UINT32_MAX));
+  const auto* const id = json.contains("conn") ? "conn" : "id";
+  event.id = static_cast<std::uint32_t>(reader.integer(id, 0, UINT32_MAX));
   event.name = reader.text("name");
   if (json.contains("value") && json["value"].is_number_integer()) {
     event.value = reader.integer("value", INT64_MIN, INT64_MAX);

@@ -20,7 +20,7 @@ struct TraceEvent {
   Instant time{};
   std::string dir;  ///< `to_device`, `from_device`, `write`, ...: what happened
   std::vector<std::byte> bytes;
-  std::uint32_t id{};  ///< of a CAN frame
+  std::uint32_t id{};  ///< of a CAN frame, or the number of a connection
   std::string name;    ///< of an input
   std::int64_t value{};
   std::string text;  ///< what bytes do not say, for comparison: acknowledgements, lamps

@@ -65,10 +65,9 @@ constexpr void store_u16_le(std::span<std::byte, 2> out, std::uint16_t value) no
 /// NaN too.
 [[nodiscard]] constexpr float load_f32_le(std::span<const std::byte, 4> in) noexcept {
   // Written out, so that compilers see that it is one move.
-  return std::bit_cast<float>(std::to_integer<std::uint32_t>(in[0]) |
-                              std::to_integer<std::uint32_t>(in[1]) << 8 |
-                              std::to_integer<std::uint32_t>(in[2]) << 16 |
-                              std::to_integer<std::uint32_t>(in[3]) << 24);
+  return std::bit_cast<float>(
+      std::to_integer<std::uint32_t>(in[0]) | std::to_integer<std::uint32_t>(in[1]) << 8 |
+      std::to_integer<std::uint32_t>(in[2]) << 16 | std::to_integer<std::uint32_t>(in[3]) << 24);
 }
 
 /// Writes the bits of a single-precision number, least significant byte first.

@@ -45,6 +45,9 @@ class ImpairedStream final : public StreamPort {
 
   [[nodiscard]] Instant now() const override { return inner_->now(); }
   [[nodiscard]] std::optional<int> descriptor() const override { return inner_->descriptor(); }
+  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
+    return inner_->touch(input, value);
+  }
 
   [[nodiscard]] ImpairmentStatistics statistics() const noexcept { return paths_.statistics(); }
 

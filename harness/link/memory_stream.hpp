@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +43,15 @@ class MemoryStream final : public StreamPort {
   }
 
   [[nodiscard]] Instant now() const override { return now_; }
+
+  /// For devices that have `set_input(time, name, value)`.
+  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
+    if constexpr (requires { device_.set_input(now_, input, value); }) {
+      return device_.set_input(now_, input, value);
+    } else {
+      return false;
+    }
+  }
 
   /// To look at the device and to touch it. Its time is `now()`.
   [[nodiscard]] Device& device() noexcept { return device_; }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
@@ -33,6 +35,14 @@ class StreamPort {
 
   /// The file descriptor behind a real port, for what has to outlive this process; none in memory.
   [[nodiscard]] virtual std::optional<int> descriptor() const { return std::nullopt; }
+
+  /// Does at the device what its link cannot: sets a switch or an input, turns its power off and
+  /// on. Names and values are the device's own. False: there is no such input, or nobody who could.
+  [[nodiscard]] virtual bool touch(std::string_view input, std::int64_t value) {
+    (void)input;
+    (void)value;
+    return false;
+  }
 };
 
 }  // namespace armjig

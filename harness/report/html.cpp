@@ -150,6 +150,7 @@ list cells_data(const Table& table, const std::vector<std::string>& cells) {
 
 data section_data(const ReportSection& section, std::size_t number) {
   list plots;
+  for (const auto& scene : section.scenes) plots.emplace_back().set("figure", to_figure(scene));
   for (const auto& plot : section.plots) plots.emplace_back().set("figure", to_figure(plot));
   list table_lines;
   for (const auto& cells : section.table.rows) {

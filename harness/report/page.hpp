@@ -131,6 +131,18 @@ figcaption { font-weight: 600; }
 .s0, .s4 { --s: light-dark(#1f62c9, #78aefc); } .s1, .s5 { --s: light-dark(#c2500a, #ffa45c); }
 .s2, .s6 { --s: light-dark(#0d7d6c, #4fd1bb); } .s3, .s7 { --s: light-dark(#9c2f8f, #eb92df); }
 .line:is(.s4, .s5, .s6, .s7) { stroke-dasharray: 6 5; }
+.scene svg { display: block; width: 100%; height: min(28rem, 100vw); touch-action: pan-y;
+  cursor: grab; }
+.plot.scene path { stroke: var(--line); stroke-width: 1; }
+.plot.scene .trail { stroke: var(--s); stroke-width: 1.75; }
+.plot.scene .sticks { stroke: var(--ink); stroke-width: 7; }
+.scene circle { fill: var(--card); stroke: var(--ink); stroke-width: 2;
+  vector-effect: non-scaling-stroke; }
+.scene .tool { fill: var(--s); }
+.player { display: flex; gap: .75rem; align-items: center; }
+.player input { flex: 1; min-width: 0; padding: 0; accent-color: var(--unclear); }
+.player output { min-width: 4.5rem; text-align: right; font-variant-numeric: tabular-nums; }
+:root:not(.js) .scene :is(svg, .player, .x-label) { display: none; }
 .no-data { padding: 4rem 0; text-align: center; color: var(--soft); }
 footer { margin-top: 3rem; color: var(--soft); font-size: .82rem; }
 
@@ -174,6 +186,76 @@ inline constexpr std::string_view kScript = R"js(
   systemDark.addEventListener('change', nameTheme);
   nameTheme();
   root.classList.add('js');
+
+  const showScene = (figure) => {
+    const { times, chains } = JSON.parse(figure.dataset.scene);
+    const svg = figure.querySelector('svg');
+    const [button, slider, clock] = figure.querySelectorAll('button, input, output');
+    const points = (chain) => Array.from({ length: chain.length / 3 },
+                                         (_, i) => chain.slice(3 * i, 3 * i + 3));
+    const poses = chains.map(points);
+    const trail = poses.map((pose) => pose.at(-1));
+    const reach = Math.max(1, ...poses.flat().map((point) => Math.hypot(...point)));
+    const floor = Array.from({ length: 49 }, (_, i) =>
+        [reach * Math.cos(i * Math.PI / 24), reach * Math.sin(i * Math.PI / 24), 0]);
+    const axes = [[[-reach, 0, 0], [reach, 0, 0]], [[0, -reach, 0], [0, reach, 0]]];
+    let turn = -0.9, tilt = 0.4;
+    const seen = ([x, y, z]) => {
+      const depth = x * Math.sin(turn) + y * Math.cos(turn);
+      return [x * Math.cos(turn) - y * Math.sin(turn),
+              -(z * Math.cos(tilt) + depth * Math.sin(tilt))].map(Math.round);
+    };
+    const make = (name, kind) => {
+      const element = document.createElementNS(svg.namespaceURI, name);
+      element.setAttribute('class', kind);
+      return svg.appendChild(element);
+    };
+    svg.setAttribute('viewBox', [-1.1, -1.1, 2.2, 1.7].map((side) => side * reach).join(' '));
+    const lines = [floor, ...axes].map((line) => [make('path', 'ground'), line]);
+    const path = make('path', 'trail s0');
+    const sticks = make('path', 'sticks');
+    const joints = poses[0].map((_, i) =>
+        make('circle', i === poses[0].length - 1 ? 'tool s0' : 'joint'));
+    for (const joint of joints) joint.setAttribute('r', reach / 60);
+    const draw = (element, line) => element.setAttribute('d', 'M' + line.map(seen).join('L'));
+    const show = () => {
+      const pose = poses[slider.value];
+      for (const [element, line] of lines) draw(element, line);
+      draw(path, trail);
+      draw(sticks, pose);
+      pose.map(seen).forEach(([x, y], i) => {
+        joints[i].setAttribute('cx', x);
+        joints[i].setAttribute('cy', y);
+      });
+      clock.textContent = `${times[slider.value].toFixed(2)} s`;
+    };
+    let began = null;
+    const stop = () => { began = null; button.textContent = 'Play'; };
+    const step = (now) => {
+      if (began === null) return;
+      const next = times.findIndex((time) => time >= (now - began) / 1000);
+      slider.value = next < 0 ? times.length - 1 : next;
+      show();
+      if (next < 0) stop(); else requestAnimationFrame(step);
+    };
+    button.addEventListener('click', () => {
+      if (began !== null) return stop();
+      const from = +slider.value === times.length - 1 ? 0 : times[slider.value];
+      began = performance.now() - 1000 * from;
+      button.textContent = 'Stop';
+      requestAnimationFrame(step);
+    });
+    slider.max = times.length - 1;
+    slider.addEventListener('input', () => { stop(); show(); });
+    svg.addEventListener('pointermove', (event) => {
+      if (event.buttons === 0) return;
+      turn += event.movementX / 150;
+      tilt = Math.min(1.5, Math.max(0, tilt + event.movementY / 150));
+      show();
+    });
+    show();
+  };
+  document.querySelectorAll('.scene').forEach(showScene);
 
   const search = document.getElementById('search');
   if (!search) return;
@@ -229,7 +311,7 @@ inline constexpr std::string_view kScript = R"js(
 /// The policy lets no other script run, whatever a device wrote into the report.
 /// tests/integration/report_page_test.py fails if it does not fit the script, and says what would.
 inline constexpr std::string_view kScriptHash =
-    "sha256-S6nfaZkbTiZkmVVPP1WS+BL9Mj44Fd5AjDcza7U/poY=";
+    "sha256-UNes29pIrcmK5x+ksTSsl8dk6SFgwwgiqxqkphPLevs=";
 
 inline constexpr const char* kTemplate = R"html(<!doctype html>
 <html lang="en">

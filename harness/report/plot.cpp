@@ -340,7 +340,13 @@ double room_for(const std::vector<Tick>& ticks) {
   return 14 + 7.2 * static_cast<double>(most);
 }
 
-std::string axes(const Plot& plot, const Ranges& ranges) {
+/// Grid, curves and labels, in pixels of height and percent of width.
+struct Drawing {
+  std::string body;
+  double left{};  ///< pixels for the labels of y
+};
+
+Drawing draw(const Plot& plot, const Ranges& ranges) {
   const bool has_bars =
       std::ranges::find(plot.series, Shape::kBars, &Series::shape) != plot.series.end();
   Ruler x{plot.x.scale, ranges.x, 8};
@@ -350,12 +356,49 @@ std::string axes(const Plot& plot, const Ranges& ranges) {
   y.round_out(1);
   const auto x_ticks = x.ticks();
   const auto y_ticks = y.ticks();
+  return {grid(x_ticks, y_ticks) + curves(plot, x, y) + tick_labels(x_ticks, y_ticks),
+          room_for(y_ticks)};
+}
+
+std::string axes(const Plot& plot, const Ranges& ranges) {
+  const auto [body, left] = draw(plot, ranges);
   return fmt::format(
       "<div class=\"axes\" style=\"padding-left: {:.0f}px\"><svg role=\"img\" aria-label=\"{}\" "
       "width=\"100%\" height=\"{:.0f}\">\n"
-      "{}{}{}</svg></div>\n",
-      room_for(y_ticks), spoken(plot, ranges), kPixelsHigh + 26, grid(x_ticks, y_ticks),
-      curves(plot, x, y), tick_labels(x_ticks, y_ticks));
+      "{}</svg></div>\n",
+      left, spoken(plot, ranges), kPixelsHigh + 26, body);
+}
+
+constexpr auto kFileStyle = R"css(
+svg { --card: #fff; --ink: #1a2330; --soft: #566274; --line: #dbe1e9; overflow: visible;
+  --c0: #1f62c9; --c1: #c2500a; --c2: #0d7d6c; --c3: #9c2f8f;
+  font: 13px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
+@media (prefers-color-scheme: dark) { svg { --card: #161b23; --ink: #e5eaf1; --soft: #9ba8b9;
+  --line: #2b3440; --c0: #78aefc; --c1: #ffa45c; --c2: #4fd1bb; --c3: #eb92df; } }
+.card { fill: var(--card); stroke: var(--line); }
+text { fill: var(--ink); } .title { font-weight: 600; font-size: 15px; }
+.grid line { stroke: var(--line); } .soft, .ticks text { fill: var(--soft); font-size: 12px; }
+.ticks .x { text-anchor: middle; } .ticks .y, .end { text-anchor: end; }
+path { fill: none; stroke: var(--s); stroke-width: 1.75; stroke-linejoin: round;
+  stroke-linecap: round; vector-effect: non-scaling-stroke; }
+.bars { fill: var(--s); fill-opacity: .28; stroke-width: 1; } .dots { stroke-width: 5; }
+.s0, .s4 { --s: var(--c0); } .s1, .s5 { --s: var(--c1); } .s2, .s6 { --s: var(--c2); }
+.s3, .s7 { --s: var(--c3); } .line:is(.s4, .s5, .s6, .s7) { stroke-dasharray: 6 5; }
+)css";
+
+/// Names of series side by side, from `x` on.
+std::string file_legend(const Plot& plot, double x, double y) {
+  std::string svg;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const auto& series = plot.series[i];
+    if (series.name.empty()) continue;
+    svg += fmt::format(
+        "<path class=\"{} s{}\" d=\"M{:.0f} {:.0f}h24\"/><text x=\"{:.0f}\" "
+        "y=\"{:.0f}\">{}</text>\n",
+        class_of(series.shape), i % kStyles, x, y - 4, x + 32, y, label(series.name));
+    x += 56 + 7.5 * static_cast<double>(wording::width_of(wording::line(series.name)));
+  }
+  return svg;
 }
 
 }  // namespace
@@ -368,6 +411,31 @@ std::string to_figure(const Plot& plot) {
       "<p class=\"x-label\">{}</p>\n</figure>\n",
       label(plot.title), legend(plot), label(plot.y.label),
       is_empty ? "<p class=\"no-data\">no data</p>\n" : axes(plot, ranges), label(plot.x.label));
+}
+
+std::string to_svg(const Plot& plot) {
+  constexpr double kWide = 760;
+  constexpr double kTop = 96;     // title, legend, label of y
+  constexpr double kBottom = 48;  // labels of x
+  constexpr double kMargin = 20;
+  const auto ranges = ranges_of(plot);
+  const bool is_empty = ranges.x.is_empty() || ranges.y.is_empty();
+  const auto drawing =
+      is_empty ? Drawing{"<text class=\"soft\">no data</text>", 0} : draw(plot, ranges);
+  const double left = kMargin + drawing.left;
+  const double high = kTop + kPixelsHigh + kBottom;
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "viewBox=\"0 0 {0:.0f} {1:.0f}\" role=\"img\" aria-label=\"{2}\">\n<style>{3}</style>\n"
+      "<rect class=\"card\" x=\".5\" y=\".5\" width=\"{4:.0f}\" height=\"{5:.0f}\" rx=\"10\"/>\n"
+      "<text class=\"title\" x=\"{6:.0f}\" y=\"30\">{7}</text>\n{8}"
+      "<text class=\"soft\" x=\"{6:.0f}\" y=\"{9:.0f}\">{10}</text>\n"
+      "<svg x=\"{11:.0f}\" y=\"{12:.0f}\" width=\"{13:.0f}\" height=\"{14:.0f}\">\n{15}</svg>\n"
+      "<text class=\"soft end\" x=\"{16:.0f}\" y=\"{17:.0f}\">{18}</text>\n</svg>\n",
+      kWide, high, is_empty ? label(plot.title) : spoken(plot, ranges), kFileStyle, kWide - 1,
+      high - 1, kMargin, label(plot.title), file_legend(plot, kMargin, 54), kTop - 16,
+      label(plot.y.label), left, kTop, kWide - left - kMargin, kPixelsHigh, drawing.body,
+      kWide - kMargin, high - 10, label(plot.x.label));
 }
 
 }  // namespace armjig

@@ -47,4 +47,7 @@ struct Plot {
 /// costs some thousand, and looks the same.
 [[nodiscard]] std::string to_figure(const Plot& plot);
 
+/// The same as an SVG file of its own, 760 pixels wide, light or dark as its reader has it.
+[[nodiscard]] std::string to_svg(const Plot& plot);
+
 }  // namespace armjig

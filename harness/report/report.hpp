@@ -14,6 +14,7 @@
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
 #include "harness/report/plot.hpp"
+#include "harness/report/scene.hpp"
 
 namespace armjig {
 
@@ -59,12 +60,13 @@ struct Table {
   std::vector<std::vector<std::string>> rows{};
 };
 
-/// What was measured, as opposed to checked: words, then a table, then plots, each optional.
+/// What was measured, as opposed to checked: words, a table, scenes, then plots, each optional.
 struct ReportSection {
   std::string title{};
   std::string text{};
   Table table{};
   std::vector<Plot> plots{};
+  std::vector<Scene> scenes{};
 };
 
 /// A run. All forms of it are made from this.

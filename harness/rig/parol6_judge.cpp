@@ -47,20 +47,10 @@ bool ends_homing(Command command) noexcept {
          command == Command::kClearError || command == Command::kJog || command == Command::kGoTo;
 }
 
-bool is_outside(const JointBounds& bounds, std::int32_t position) noexcept {
-  return position < bounds.lower.value || position > bounds.upper.value;
-}
-
-/// Whether `speed` drives a joint that stands at or beyond a bound further out.
-bool leads_out(const JointBounds& bounds, Steps position, StepsPerSecond speed) noexcept {
-  return (position >= bounds.upper && speed.value > 0) ||
-         (position <= bounds.lower && speed.value < 0);
-}
-
 /// Where a go-to comes to rest: off its target, where the distance outweighs the commanded speed
 /// (parol6.goto.law).
-std::int32_t resting_place(Steps goal, StepsPerSecond feed) noexcept {
-  return goal.value + feed.value / 100;
+Steps resting_place(Steps goal, StepsPerSecond feed) noexcept {
+  return goal + Steps{feed.value / 100};
 }
 
 /// Whether a gripper set-point does anything that the one in the frame before did not
@@ -288,7 +278,7 @@ class BoardJudge final : public Judge {
         return Refusal{Hazard::kMove, fmt::format("j{} may jog at most at {} steps/s", j + 1,
                                                   kJointBounds[j].max_jog.value)};
       }
-      if (is_arm_homed() && leads_out(kJointBounds[j], telemetry_->position[j], speed)) {
+      if (is_arm_homed() && kJointBounds[j].forbid(telemetry_->position[j], speed)) {
         return Refusal{Hazard::kMove, fmt::format("j{} is at its bound", j + 1)};
       }
     }
@@ -299,8 +289,8 @@ class BoardJudge final : public Judge {
     if (!is_arm_homed()) return Refusal{Hazard::kMove, "go-to needs a homed arm"};
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& bounds = kJointBounds[j];
-      if (is_outside(bounds, frame.position[j].value) ||
-          is_outside(bounds, resting_place(frame.position[j], frame.speed[j]))) {
+      if (!bounds.contain(frame.position[j]) ||
+          !bounds.contain(resting_place(frame.position[j], frame.speed[j]))) {
         return Refusal{Hazard::kMove, fmt::format("j{} may go from {} to {} steps", j + 1,
                                                   bounds.lower.value, bounds.upper.value)};
       }
@@ -323,7 +313,7 @@ class BoardJudge final : public Judge {
     for (const auto* board : {&shipped_, &strict_}) {
       if (!is_arm_homed() || board->latched().command != Command::kJog) continue;
       for (std::size_t j = 0; j < kJointCount; ++j) {
-        if (leads_out(kJointBounds[j], telemetry_->position[j], board->latched().speed[j])) {
+        if (kJointBounds[j].forbid(telemetry_->position[j], board->latched().speed[j])) {
           return fmt::format("j{} reached its bound", j + 1);
         }
       }

@@ -38,8 +38,7 @@ Outcome<Rig> Rig::open(std::string_view device, const RigOptions& options,
                        OpenEmulated open_emulated) {
   auto port = open_port(options, open_emulated);
   if (!port) return tl::unexpected{port.error()};
-  Rig rig;
-  rig.port_ = *std::move(port);
+  Rig rig{*std::move(port)};
   if (!options.wire_log.empty()) {
     const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
     auto logged = LoggedStream::log(std::move(rig.port_), options.wire_log, *entry);

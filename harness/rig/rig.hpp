@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "harness/core/error.hpp"
 #include "harness/link/impaired_stream.hpp"
@@ -43,7 +44,11 @@ class Rig {
   [[nodiscard]] static Outcome<Rig> open(std::string_view device, const RigOptions& options,
                                          OpenEmulated open_emulated);
 
+  /// A rig of nothing but a port, without a guard: for devices in memory.
+  explicit Rig(std::unique_ptr<StreamPort> port) noexcept : port_{std::move(port)} {}
+
   [[nodiscard]] StreamPort& port() noexcept { return *port_; }
+  [[nodiscard]] const StreamPort& port() const noexcept { return *port_; }
 
   /// Why the guard last refused a write or stopped the arm; none if it never did.
   [[nodiscard]] std::optional<Refusal> last_refusal() const;

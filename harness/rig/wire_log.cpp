@@ -42,6 +42,15 @@ Result<std::size_t> LoggedStream::read(std::span<std::byte> into, Instant deadli
   return size;
 }
 
+bool LoggedStream::touch(std::string_view input, std::int64_t value) {
+  if (!port_->touch(input, value)) return false;
+  file_ << fmt::format(R"({{"t_us":{},"dir":"input","name":"{}","value":{}}})", microseconds(now()),
+                       input, value)
+        << '\n'
+        << std::flush;
+  return true;
+}
+
 void LoggedStream::write_line(Direction direction, Bytes bytes) {
   std::vector<Message> messages;
   dissector_->feed(direction, now(), bytes, messages);

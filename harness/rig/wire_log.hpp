@@ -27,6 +27,7 @@ class LoggedStream final : public StreamPort {
   Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override;
   [[nodiscard]] Instant now() const override { return port_->now(); }
   [[nodiscard]] std::optional<int> descriptor() const override { return port_->descriptor(); }
+  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override;
 
  private:
   LoggedStream(std::unique_ptr<StreamPort> port, std::ofstream file,

@@ -7,6 +7,7 @@
 
 #include "harness/core/hex.hpp"
 #include "harness/wire/demo/demo.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
 #include "harness/wire/morap/dissector.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::array kDissectors{
     DissectorEntry{"demo", demo::make_dissector},
+    DissectorEntry{"kinovazed", kinovazed::make_dissector},
     DissectorEntry{"morap", morap::make_dissector},
     DissectorEntry{"parol6", parol6::make_dissector},
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cstddef>
 
 namespace armjig {
@@ -25,6 +26,25 @@ std::string code_text(const Field& field, std::int64_t value) {
                                      : fmt::format("{} ({})", value, named->name);
 }
 
+/// The piece of that number, without the line end.
+std::string_view piece(Bytes message, std::size_t number) {
+  std::string_view line{reinterpret_cast<const char*>(message.data()), message.size()};
+  line = line.substr(0, line.find_first_of("\r\n"));
+  for (; number > 0; --number) line.remove_prefix(std::min(line.find(':'), line.size() - 1) + 1);
+  return line.substr(0, line.find(':'));
+}
+
+std::int64_t piece_value(const Field& field, std::string_view text) {
+  if (field.encoding == Encoding::kCode) {
+    const auto named = std::ranges::find(field.values, text, &NamedValue::name);
+    return named == field.values.end() ? -1 : named->value;
+  }
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\v\f\r+"), text.size()));
+  std::int64_t value = -1;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
 std::string number_text(const Field& field, const std::string& number) {
   return field.unit.empty() ? number : fmt::format("{} {}", number, field.unit);
 }
@@ -39,6 +59,7 @@ std::size_t place_of(const Field& field, std::size_t rank) noexcept {
 }  // namespace
 
 std::int64_t field_value(const Field& field, Bytes message) noexcept {
+  if (field.place == Place::kPiece) return piece_value(field, piece(message, field.offset));
   std::uint64_t raw = 0;
   for (std::size_t i = 0; i < field.width; ++i) {
     raw = raw << 8 | std::to_integer<std::uint64_t>(message[place_of(field, i)]);

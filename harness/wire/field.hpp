@@ -22,6 +22,13 @@ enum class Encoding : std::uint8_t {
   kFloatLittle,     ///< IEEE single precision, little-endian; as a number its 32 bits
 };
 
+/// Where a field stands.
+enum class Place : std::uint8_t {
+  kBytes,  ///< `width` bytes at `offset`
+  kPiece,  ///< text: the piece number `offset` of a line that colons divide; a decimal number, or
+           ///< with `kCode` a word. What is neither reads as -1
+};
+
 struct NamedValue {
   std::int64_t value{};
   std::string_view name;
@@ -32,19 +39,21 @@ struct NamedValue {
 struct Field {
   std::string_view name;  ///< dotted, as in `speed.j1`
   std::uint16_t offset{};
-  std::uint8_t width{};  ///< in bytes, 1 to 4
+  std::uint8_t width{};  ///< in bytes, 1 to 4; 0 for a piece
   Encoding encoding{};
   std::string_view unit;
   std::string_view meaning;
   std::span<const std::string_view> bits{};  ///< eight names from bit 7 down; empty: no meaning
   std::span<const NamedValue> values{};      ///< for `kCode`
   std::int64_t literal{};                    ///< for `kLiteral`, read as `kUnsigned`
+  Place place = Place::kBytes;
 };
 
-/// The number in the field. Requires a message at least `offset + width` long.
+/// The number in the field. Requires a message at least `offset + width` long, or one with enough
+/// pieces.
 [[nodiscard]] std::int64_t field_value(const Field& field, Bytes message) noexcept;
 
-/// Writes the low `width` bytes of `value`.
+/// Writes the low `width` bytes of `value`. Requires a field of `kBytes`.
 void set_field_value(const Field& field, std::span<std::byte> message, std::int64_t value) noexcept;
 
 /// The value for people: `-3000 steps/s`, `123 (jog)`, `in1 estop_released (0x8F)`.

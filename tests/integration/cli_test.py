@@ -14,6 +14,16 @@ import tempfile
 
 ARMJIG = sys.argv[1]
 SOURCE = pathlib.Path(sys.argv[2])
+# Lines that nobody may begin to move for.
+WRONG_LINES = {
+    "limits": "MoveJoint(200, -90, 180, 0, 0, 180, t=9)",
+    "unreachable": "MoveCart(900, 0, 300, 0, 90, 180, t=5)",
+    "too-fast": "MoveJoint(0, -90, 180, 0, 0, 180, t=0.1)",
+    "no-time": "MoveJoint(90, -90, 180, 0, 0, 170, t=0)",
+    "over-100": "MoveJoint(90, -90, 180, 0, 0, 170, v=101, a=10)",
+    "unknown": "SpeedCart(1)",
+    "missing": "MoveJoint(90, -90, 180, 0, 0)",
+}
 IDLE = "FFFFFF34" + "00" * 36 + "FF" + "00" * 12 + "E40102"
 RECORDING = SOURCE / "captures/parol6/outputs_sweep_a.jsonl"
 
@@ -44,6 +54,12 @@ def rows(folder):
                      RECORDING.read_text().splitlines()[0] + '\n{"t_us":0,"dir":"to_device"\n')
     other = written(folder, "other.jsonl", '{"format":"golden-trace/1","device":"toaster"}\n')
     faulty = "emulated:?fault=swap-bytes:speed.j1"
+    examples = SOURCE / "harness/script/examples"
+    wrong = {name: written(folder, f"{name}.rbt", f"Begin()\n{line}\nEnd()\n")
+             for name, line in WRONG_LINES.items()}
+    binary = folder / "binary.rbt"
+    binary.write_bytes(bytes(range(256)))
+    silent = folder / "wire.jsonl"
     return [
         # Misuse: one clear line, exit code 2.
         ("", "", 2, ["!subcommand is required"]),
@@ -59,6 +75,22 @@ def rows(folder):
         ("emulate parol6 --speed 0", "", 2, ["!speed"]),
         ("emulate parol6 --set fault=zero:nothing", "", 2, ["!fields: start"]),
         ("trace verify /nonexistent", "", 2, ["!/nonexistent"]),
+        ("emulate morap --set nodes=x", "", 2, ["!nodes=x"]),
+        ("emulate morap --pty", "", 2, ["!a bus takes --set and --json"]),
+        ("i2c read 0x80 1 --target emulated:", "", 2, ["!ADDRESS"]),
+        ("i2c write 0x12 1 --target emulated:", "", 2, ["!missing its partner"]),
+        ("i2c scan --target tcp:localhost:1", "", 2, ["!i2c:/dev/i2c-N"]),
+        ("i2c scan --target emulated:?node=1", "", 2, ["!no such option"]),
+        ("morap tune --type pd --inertia 0.2 --pole 9", "", 2, ["!below 0"]),
+        ("morap tune --type x --inertia 0.2 --pole -9", "", 2, ["!--type"]),
+        ("morap program /nonexistent --target emulated:", "", 2, ["!/nonexistent"]),
+        ("morap simulate --inertia 0.2", "", 2, ["!--params"]),
+        ("watch morap --target emulated:", "", 2, ["!--seconds"]),
+        ("lab exec -- true", "", 2, ["!--i2c"]),
+        ("i2c scan --target i2c:/nonexistent", "", 3, ["!no such bus"]),
+        ("i2c scan --target i2c:/dev/null", "", 2, ["!not an I2C bus"]),
+        ("i2c read 0x13 1 --target emulated:", "", 3, ["!0x13"]),
+        ("morap read-params --target emulated: --node 3", "", 3, ["!0x13"]),
         # Targets that are not there: 3. Nothing selected: 4.
         ("conformance parol6 --target pty:/nonexistent", "", 3, ["!/nonexistent"]),
         ("conformance parol6 --target serial:/nonexistent", "", 3, ["!/nonexistent"]),
@@ -69,12 +101,25 @@ def rows(folder):
         ("conformance parol6 --target emulated: --filter nothing-like-that", "", 4, ["!--list"]),
         (f"trace verify {other}", "", 4, ["!toaster", "traces: 0 identical: 0 different: 0"]),
         # What it is for.
+        ("i2c scan --target emulated:?nodes=1,2&pen=yes", "", 0, ["0x11", "0x12", "0x19"]),
+        ("i2c read 0x12 1 --select 83 --target emulated:", "", 0, ["needs_calibration"]),
+        ("decode morap 24 80", "", 0, ["128 (read_angle)"]),
+        ("morap tune --type pd --inertia 0.2 --pole -9", "", 0,  # reference vector 42
+         ["2200cdcc4c3e000010c1", "00900102364b03c1513f1441022c4b03c1473f144101fed774bf000000001a"]),
+        ("morap read-params --target emulated:", "", 0, ["d = [-1.5711", "rate_hz = 500"]),
+        ("morap simulate --type pid --inertia 0.2 --pole -6 --step 0.3 --current 100", "", 0,
+         ["overshoot"]),
+        ("watch morap --target emulated:?nodes=1,2 --count 1 --json", "", 0, ['"node":2']),
+        ("console morap --target emulated:", "calibrate\ngoto 0.5\nwait 2\nstatus\n", 0,
+         ["0.49", "enabled"]),
+        ("console morap --target emulated:", "node 3\nstatus\n", 1, ["!nobody"]),
+        ("console morap --target emulated:", "fly\n", 2, ["!'help'"]),
         ("--version", "", 0, ["armjig 0."]),
         ("--help", "", 0, ["armjig emulate parol6", "Exit codes"]),
         ("conformance parol6 --list", "", 0, ["parol6.frame.burst"]),
         ("conformance parol6 --explain parol6.frame.burst", "", 0, ["must", "source"]),
-        ("conformance parol6 --target emulated:", "", 0, ["15 passed, 0 failed"]),
-        ("conformance demo --target emulated:", "", 0, ["2 passed, 0 failed"]),
+        ("conformance parol6 --target emulated:", "", 0, ["226 passed, 0 failed"]),
+        ("conformance demo --target emulated:", "", 0, ["3 passed, 0 failed"]),
         (f"conformance parol6 --target {faulty}", "", 1,
          ["expected     speed.j1", "FF FF FF 38", f"--target '{faulty}' --filter"]),
         (f"decode parol6 {IDLE}", "", 0, ["command            255 (idle)"]),
@@ -90,14 +135,60 @@ def rows(folder):
         ("devices --json", "", 0, ['"armjig.devices/1"']),
         ("doctor --udev-rules", "", 0, ['idVendor}=="0483"']),
         ("completion bash", "", 0, ["_armjig"]),
+        ("kin fk 90 -90 180 0 0 180", "", 0, ["262.5700", "commander"]),
+        ("kin fk 0 0 0 0 0 0", "", 1, ["114.6700", "!j2 is beyond its limits"]),
+        ("kin fk 1 2", "", 2, ["!6 joints"]),
+        ("kin fk 1 --arm /bin/sh", "", 2, ["!not a robot description"]),
+        ("kin ik 0 262.57 288.75 -90 0 -90 --json", "", 0, ["armjig.kin/1", "closed form"]),
+        ("kin ik 900 0 0 0 0 0", "", 1, ["!out of reach"]),
+        ("kin limits --arm jaco2", "", 0, ["313.0000"]),
         ("watch parol6 --target emulated: --seconds 2", "", 0, ["estop released", "0 lost"]),
         ("watch parol6 --target emulated: --seconds 1 --json", "", 0, ["armjig.telemetry/1"]),
         ("console parol6 --target emulated:", "enable\njog j1 500 0.2\n# a remark\nstatus\nquit\n",
          0, ["j1           100"]),
         ("console parol6 --target emulated:", "home\nstatus\n", 0, ["homed"]),
+        ("console parol6 --target emulated:", "home\njog world z 20 1\njog tool ry -5deg 1\n", 0,
+         ["the tool is at 0.000 262.5"]),
+        ("console parol6 --target emulated:", "jog world z 20 1\n", 1, ["!line 1: not homed"]),
+        ("console parol6 --target emulated:", "jog world z 61\n", 2, ["!at most 60 mm/s"]),
         ("console parol6 --target emulated:", "disable\njog j1 500 1\n", 1, ["!line 2"]),
         ("console parol6 --target emulated:", "frobnicate\n", 2, ["!line 1", "!frobnicate"]),
-    ]
+        # Programs.
+        (f"script check {examples}/speeds.rbt", "", 0, ["speeds.rbt:7:1: note: takes"]),
+        (f"script check {examples}/speeds.rbt --dialect commander", "", 2,
+         ["speeds.rbt:1:1: error: there are no comments"]),
+        ("script check -", "Begin()\nGripper(1, 2, 300)\nMoveJoint(90, -90, 180, 0, 0, 170)\nEnd()",
+         1, ["-:3:1: warning: the gripper is not waited for", "note: takes"]),
+        ("script check - --dialect commander", "Begin()\nHome()\nEnd()", 1, ["-:2:1: error"]),
+        ("script format -", "Begin( )\n  Delay(1.50) //x\nEnd()", 0,
+         ["Begin()\nDelay(1.5)  //x\nEnd()\n"]),
+        ("script format -", "Begin()\nDelay(1", 2, ["!-:2:8: error: the ')' is missing"]),
+        ("script", "", 2, ["!subcommand"]),
+        (f"plan {examples}/joint6.rbt", "", 0, ["t=2, trap)", "j6", "!takes 12"]),
+        (f"plan {examples}/joint6.rbt --csv -", "", 0, ["frame,time_s,line,command,j1_pos"]),
+        (f"plan {examples}/joint6.rbt --json -", "", 0, ['"schema":"armjig.plan/1"']),
+        (f"plan {examples}/joint6.rbt --trace -", "", 0, ['"golden-trace/1"', "ffffff34002800"]),
+        (f"plan {examples}/joint6.rbt --html -", "", 0, ["<!doctype html>", "data-scene"]),
+        ("plan - --from power-up", "Begin()\nMoveJoint(10, 10, 10, 10, 10, 10, t=4)\nEnd()", 0,
+         ["10.00 deg"]),
+        (f"plan {examples}/joint6.rbt --from 1,2", "", 2, ["!--from 1,2"]),
+        (f"plan {examples}/joint6.rbt --from 99999999,0,0,0,0,0", "", 2, ["!--from 9"]),
+        (f"plan {examples}/joint6.rbt --on-singularity hope", "", 2, ["!hope"]),
+        (f"plan {folder}", "", 2, ["!cannot be read"]),
+        ("plan /nonexistent", "", 2, ["!/nonexistent"]),
+        (f"plan {binary}", "", 2, ["!binary.rbt:1:1: error: byte 0x00: this is no text"]),
+        (f"run {examples}/outputs.rbt --target emulated: --unhomed", "", 0, ["Tracking"]),
+        (f"run {examples}/outputs.rbt --target emulated: --unhomed --json", "", 0,
+         ['"schema":"armjig.run/1"', '"ran_to_end":true']),
+        (f"run {examples}/joint6.rbt --target emulated:", "", 3, ["!is not homed: --home"]),
+        (f"run {examples}/joint6.rbt", "", 2, ["!--target is missing"]),
+        (f"run {examples}/pick_and_place.rbt --target pty:/nonexistent --allow state", "", 3,
+         ["!needs --allow grip,move"]),
+        (f"run {binary} --target emulated: --wire-log {silent}", "", 2, ["!this is no text"]),
+    ] + [(f"{command} {path} {more}", "", 2, [f"!{name}.rbt:2:"])
+         for name, path in wrong.items()
+         for command, more in (("plan", ""),
+                               ("run", f"--target emulated: --home --wire-log {silent}"))]
 
 
 def check(arguments, typed, exit_code, words):
@@ -122,6 +213,8 @@ def main():
         table = rows(pathlib.Path(name))
         for row in table:
             complaint = check(*row)
+            if (pathlib.Path(name) / "wire.jsonl").exists():
+                complaint += "something was sent"
             if complaint:
                 failures += 1
                 print(f"armjig {row[0]}: {complaint}")

@@ -245,6 +245,24 @@ def check_use(check, browser, page):
     check.equal(f"{what}: complaints after use", [], browser.complaints())
 
 
+def check_scene(check, browser, page):
+    """The slider sets the time of what is drawn."""
+    browser.open(page.as_uri(), "phone", "dark")
+    if not browser.evaluate("document.querySelector('.scene') !== null"):
+        return
+    what = f"{page.name} scene"
+    sticks = "document.querySelector('.scene .sticks').getAttribute('d')"
+    slider = "document.querySelector('.scene input')"
+    first = browser.evaluate(sticks)
+    check.equal(f"{what}: is drawn", True, first.startswith("M"))
+    browser.evaluate(f"{slider}.focus()")
+    browser.press("End", 35)
+    check.equal(f"{what}: is at the end", True,
+                browser.evaluate(f"{slider}.value === {slider}.max"))
+    check.equal(f"{what}: has moved", True, browser.evaluate(sticks) != first)
+    check.equal(f"{what}: complaints", [], browser.complaints())
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="for the screenshots")
@@ -261,6 +279,7 @@ def main():
                 check_script_hash(check, page.name, page.read_text(encoding="utf-8"))
                 check_looks(check, browser, page, folder)
                 check_use(check, browser, page)
+                check_scene(check, browser, page)
         finally:
             browser.close()
     print(f"screenshots in {folder}", flush=True)

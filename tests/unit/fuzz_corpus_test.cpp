@@ -14,6 +14,9 @@
 
 // Each target under a name of its own.
 // NOLINTBEGIN(bugprone-suspicious-include)
+#define LLVMFuzzerTestOneInput fuzz_kinovazed_server
+#include "fuzz/kinovazed_server.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_morap_wire
 #include "fuzz/morap_wire.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -22,6 +25,9 @@
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_splitter
 #include "fuzz/parol6_splitter.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_rbtscript
+#include "fuzz/rbtscript.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_trace_reader
 #include "fuzz/trace_reader.cpp"
@@ -57,9 +63,15 @@ TEST(FuzzCorpus, CuttingTheStreamDifferentlyChangesNothing) {
   run_corpus(fuzz_parol6_splitter, "parol6_splitter");
 }
 
+TEST(FuzzCorpus, NoClientEndsTheEmulatedServer) {
+  run_corpus(fuzz_kinovazed_server, "kinovazed_server");
+}
+
 TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {
   run_corpus(fuzz_parol6_board, "parol6_board");
 }
+
+TEST(FuzzCorpus, AnyTextIsAProgramOrRefused) { run_corpus(fuzz_rbtscript, "rbtscript"); }
 
 TEST(FuzzCorpus, AnyTextIsATraceOrRefused) { run_corpus(fuzz_trace_reader, "trace_reader"); }
 

@@ -19,9 +19,6 @@
 
 namespace armjig::parol6 {
 
-using JointSteps = std::array<Steps, kJointCount>;
-using JointSpeeds = std::array<StepsPerSecond, kJointCount>;
-
 /// What happened on the link. A frame is lost if no answer came that could be its own.
 struct DriveStatistics {
   std::uint64_t sent = 0;
@@ -39,11 +36,11 @@ struct DriveEvent {
     kEstopPressed,   ///< latched: only disable frames leave from now on
     kEstopReleased,  ///< still latched
     kLinkSilent,     ///< no telemetry for half a second
-    kLinkBack,      ///< nothing that was under way before the silence goes on by itself
-    kTookEffect,    ///< telemetry shows what was asked for
-    kNoEffect,      ///< it does not
-    kNothingMoved,  ///< the command was accepted, but the joint stands
-    kStillMoves,    ///< the joint moves although it was stopped
+    kLinkBack,       ///< nothing that was under way before the silence goes on by itself
+    kTookEffect,     ///< telemetry shows what was asked for
+    kNoEffect,       ///< it does not
+    kNothingMoved,   ///< the command was accepted, but the joint stands
+    kStillMoves,     ///< the joint moves although it was stopped
     kHomed,
   };
   Kind kind{};

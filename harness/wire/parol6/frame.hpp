@@ -15,6 +15,8 @@
 namespace armjig::parol6 {
 
 inline constexpr std::size_t kJointCount = 6;
+using JointSteps = std::array<Steps, kJointCount>;
+using JointSpeeds = std::array<StepsPerSecond, kJointCount>;
 
 inline constexpr std::byte kStartByte{0xFF};
 inline constexpr std::size_t kStartSize = 3;

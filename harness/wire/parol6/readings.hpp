@@ -36,11 +36,16 @@ enum class GripperObject : std::uint8_t {
   return (frame.homed & flag(joint)) != 0;
 }
 
-[[nodiscard]] constexpr bool is_homed(const TelemetryFrame& frame) noexcept {
+/// `homed`: a flag byte as telemetry has it.
+[[nodiscard]] constexpr bool are_all_homed(std::uint8_t homed) noexcept {
   for (std::size_t joint = 0; joint < kJointCount; ++joint) {
-    if (!is_homed(frame, joint)) return false;
+    if ((homed & flag(joint)) == 0) return false;
   }
   return true;
+}
+
+[[nodiscard]] constexpr bool is_homed(const TelemetryFrame& frame) noexcept {
+  return are_all_homed(frame.homed);
 }
 
 [[nodiscard]] constexpr bool is_estop_pressed(const TelemetryFrame& frame) noexcept {

@@ -43,10 +43,9 @@ std::variant<std::monostate, Splitter::Frame, Splitter::Fault> Splitter::judge(
   const auto tail = candidate.subspan(frame_size_ - 3, 3);
   if (tail[1] != kEndBytes[0]) return fault(FaultKind::kWrongEnd, tail[1]);
   if (tail[2] != kEndBytes[1]) return fault(FaultKind::kWrongEnd, tail[2]);
-  const auto check = std::to_integer<std::uint8_t>(tail[0]);
-  const bool check_is_fine = check_ == CheckPolicy::kIgnore || check == kCheckBoard ||
-                             (check_ == CheckPolicy::kBoardOrHost && check == kCheckHost);
-  if (!check_is_fine) return fault(FaultKind::kWrongCheck, tail[0]);
+  if (!allows(check_, std::to_integer<std::uint8_t>(tail[0]))) {
+    return fault(FaultKind::kWrongCheck, tail[0]);
+  }
   return Frame{candidate.first(frame_size_)};
 }
 

@@ -14,6 +14,11 @@ namespace armjig::parol6 {
 /// What a strict receiver demands of the check byte.
 enum class CheckPolicy : std::uint8_t { kIgnore, kBoardOnly, kBoardOrHost };
 
+[[nodiscard]] constexpr bool allows(CheckPolicy policy, std::uint8_t check) noexcept {
+  return policy == CheckPolicy::kIgnore || check == kCheckBoard ||
+         (policy == CheckPolicy::kBoardOrHost && check == kCheckHost);
+}
+
 /// The strict receiver: cuts a byte stream into frames of one length and finds its way back after
 /// any damage. A wrong frame costs one byte, then the search for `FF FF FF LEN` goes on right
 /// behind it, so no good frame that follows garbage is lost. Cutting the stream differently never

@@ -138,5 +138,17 @@ TEST(Figure, HasNumbersOnlyWhateverTheData) {
   });
 }
 
+TEST(Svg, IsAFileOfItsOwnWithTheSameCurves) {
+  auto plot = plot_of(Shape::kLine, {{0, 0}, {1, 2}, {2, 10}});
+  plot.title = "Speed < 2 & more";
+  plot.series.front().name = "j1";
+  const auto svg = to_svg(plot);
+  EXPECT_THAT(svg, ::testing::StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\""));
+  EXPECT_THAT(svg, AllOf(draws("M0 1000L5000 800L10000 0"), HasSubstr("Speed &lt; 2 &amp; more"),
+                         HasSubstr(">j1</text>"), HasSubstr("time / s")));
+}
+
+TEST(Svg, SaysThatThereIsNoData) { EXPECT_THAT(to_svg({.title = "x"}), HasSubstr("no data")); }
+
 }  // namespace
 }  // namespace armjig

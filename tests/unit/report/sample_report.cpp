@@ -135,6 +135,17 @@ Report nasty_report() {
   return report;
 }
 
+/// Two sticks, of which the outer one goes round.
+Scene waving_arm() {
+  Scene scene{"An arm & its tool", "mm", {}};
+  for (int i = 0; i <= 100; ++i) {
+    const double angle = 0.06 * i;
+    scene.poses.push_back(
+        {0.05 * i, {{}, {0, 0, 300}, {200 * std::cos(angle), 200 * std::sin(angle), 320}}});
+  }
+  return scene;
+}
+
 Report drive_report() {
   auto report = one_of_each();
   report.title = "Drive run of parol6, 60 s at 100 Hz";
@@ -153,7 +164,7 @@ Report drive_report() {
     jitter.series.push_back(std::move(series));
   }
   report.sections = {
-      {.title = "Motion", .plots = {tracking(), jitter}},
+      {.title = "Motion", .plots = {tracking(), jitter}, .scenes = {waving_arm()}},
       {.title = "Latency",
        .text = "Each send is compared with its deadline on the monotonic clock. The worst is the "
                "worst of all, not of a sample.",

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/command.hpp"
+
+namespace armjig::cli {
+
+/// Adds `mutants` to the subcommand `conformance`.
+void add_conformance_mutants(CLI::App& conformance, Action& action);
+
+}  // namespace armjig::cli

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/mutation.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <map>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "conformance/demo/mutants.hpp"
+#include "conformance/parol6/mutants.hpp"
+#include "conformance/selection.hpp"
+#include "harness/core/version.hpp"
+#include "harness/rig/target.hpp"
+
+namespace armjig {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+
+using Cases = std::vector<const Case*>;
+
+RigOptions target_with(std::string_view fault, Profile profile) {
+  RigOptions how;
+  how.target.scheme = "emulated";
+  how.target.text = fmt::format("emulated:?profile={}", to_string(profile));
+  how.target.options["profile"] = to_string(profile);
+  if (!fault.empty()) {
+    how.target.text += fmt::format("&fault={}", fault);
+    how.target.options["fault"] = fault;
+  }
+  how.permissions = Permissions::all();
+  return how;
+}
+
+/// One device on which cases are run, one after the other.
+class Trial {
+ public:
+  Trial(std::unique_ptr<Bench> bench, Profile profile)
+      : bench_{std::move(bench)}, profile_{profile} {}
+
+  /// False: there is no sign of life.
+  bool begin() {
+    bench_->begin(profile_, kSeed);
+    if (!bench_->is_alive()) return false;
+    bench_->measure_noise();
+    return true;
+  }
+
+  /// What the case finds wrong; none if nothing, or if its start is out of reach.
+  std::optional<std::string> finding(const Case& one) {
+    if (unreachable_.contains(one.start)) return std::nullopt;
+    bench_->begin(profile_, kSeed);
+    bench_->bring_to(one.start);
+    if (bench_->judgement().verdict != Verdict::kPass) {
+      unreachable_.insert(one.start);
+      return std::nullopt;
+    }
+    bench_->begin(profile_, kSeed);
+    one.run(*bench_);
+    const auto& judgement = bench_->judgement();
+    if (judgement.verdict != Verdict::kFail) return std::nullopt;
+    return fmt::format("expected {}, got {}", judgement.expected, judgement.actual);
+  }
+
+ private:
+  std::unique_ptr<Bench> bench_;
+  Profile profile_;
+  std::set<std::uint8_t> unreachable_;
+};
+
+/// Calls `work` for 0 to `count` - 1 on several threads.
+template <class Work>
+void in_parallel(unsigned threads, std::size_t count, Work work) {
+  std::atomic<std::size_t> next{0};
+  const auto run = [&] {
+    for (auto i = next++; i < count; i = next++) work(i);
+  };
+  std::vector<std::jthread> others;
+  for (unsigned i = 1; i < threads; ++i) others.emplace_back(run);
+  run();
+}
+
+bool is_hinted(const Case& one, std::span<const std::string_view> hints) {
+  return std::ranges::any_of(
+      hints, [&](std::string_view hint) { return one.requirement.starts_with(hint); });
+}
+
+class Mutation {
+ public:
+  Mutation(const Suite& suite, const MutantsEntry& entry, const MutationOptions& options)
+      : suite_{suite}, entry_{entry}, options_{options} {}
+
+  Outcome<MutationResult> run() {
+    if (auto tried = try_sound(); !tried) return tl::unexpected{tried.error()};
+    for (auto& mutant : entry_.all()) {
+      if (mutant.name.find(options_.filter) == std::string::npos) continue;
+      result_.fates.push_back({std::move(mutant)});
+    }
+    try_all();
+    if (options_.proves_requirements) prove_requirements();
+    return std::move(result_);
+  }
+
+ private:
+  /// Only what passes on a sound device can show a fault.
+  Outcome<void> try_sound() {
+    auto trial = open({});
+    if (!trial) return tl::unexpected{trial.error()};
+    (void)trial->begin();
+    for (const auto* one : select(suite_, options_.profile, {})) {
+      if (trial->finding(*one)) {
+        result_.broken_on_sound.push_back(name_of(*one));
+      } else {
+        cases_.push_back(one);
+      }
+    }
+    return {};
+  }
+
+  [[nodiscard]] Outcome<Trial> open(std::string_view fault) const {
+    auto bench = suite_.open(target_with(fault, options_.profile));
+    if (!bench) return tl::unexpected{bench.error()};
+    return Trial{*std::move(bench), options_.profile};
+  }
+
+  /// A section is the work of one thread: what is found there shapes the order of what follows.
+  void try_all() {
+    std::map<std::string, std::vector<MutantFate*>> sections;
+    for (auto& fate : result_.fates) sections[fate.mutant.section].push_back(&fate);
+    std::vector<std::vector<MutantFate*>> work;
+    for (auto& [name, fates] : sections) {
+      constexpr std::size_t kPiece = 32;
+      for (std::size_t i = 0; i < fates.size(); i += kPiece) {
+        const auto end = std::min(i + kPiece, fates.size());
+        work.emplace_back(fates.begin() + static_cast<std::ptrdiff_t>(i),
+                          fates.begin() + static_cast<std::ptrdiff_t>(end));
+      }
+    }
+    in_parallel(options_.threads, work.size(), [&](std::size_t i) { try_section(work[i]); });
+  }
+
+  void try_section(const std::vector<MutantFate*>& fates) const {
+    auto order = cases_;
+    const auto hints = entry_.hints(fates.front()->mutant.section);
+    std::ranges::stable_partition(order, [&](const Case* one) { return is_hinted(*one, hints); });
+    for (auto* fate : fates) {
+      const auto killer = try_mutant(*fate, order);
+      if (killer != order.end()) std::rotate(order.begin(), killer, killer + 1);
+    }
+  }
+
+  [[nodiscard]] Cases::iterator try_mutant(MutantFate& fate, Cases& order) const {
+    auto trial = open(fate.mutant.name);
+    if (!trial) {
+      fate.finding = trial.error().where + ": " + trial.error().hint;
+      return order.end();
+    }
+    if (!trial->begin()) {
+      fate.killer = fmt::format("{}.alive", suite_.device);
+      fate.finding = "no sign of life";
+      return order.end();
+    }
+    for (auto one = order.begin(); one != order.end(); ++one) {
+      auto finding = trial->finding(**one);
+      if (!finding) continue;
+      fate.killer = name_of(**one);
+      fate.finding = *std::move(finding);
+      return one;
+    }
+    return order.end();
+  }
+
+  void prove_requirements() {
+    std::set<std::string_view> proven;
+    for (const auto& fate : result_.fates) {
+      for (const auto* one : cases_) {
+        if (name_of(*one) == fate.killer) proven.insert(one->requirement);
+      }
+    }
+    std::vector<const Requirement*> open_ones;
+    for (const auto* one : cases_) {
+      const auto& requirement = requirement_of(suite_, *one);
+      if (requirement.level != Level::kMust || !proven.insert(requirement.id).second) continue;
+      open_ones.push_back(&requirement);
+    }
+    std::vector<char> is_proven(open_ones.size());
+    in_parallel(options_.threads, open_ones.size(),
+                [&](std::size_t i) { is_proven[i] = breaks_on_a_mutant(*open_ones[i]); });
+    for (std::size_t i = 0; i < open_ones.size(); ++i) {
+      if (is_proven[i] == 0) result_.unproven.push_back(open_ones[i]);
+    }
+  }
+
+  /// Tries mutants of the sections that hint at the requirement first.
+  [[nodiscard]] bool breaks_on_a_mutant(const Requirement& requirement) const {
+    Cases own;
+    std::ranges::copy_if(cases_, std::back_inserter(own),
+                         [&](const Case* one) { return one->requirement == requirement.id; });
+    std::vector<const Mutant*> order;
+    for (const auto& fate : result_.fates) order.push_back(&fate.mutant);
+    std::ranges::stable_partition(order, [&](const Mutant* mutant) {
+      return is_hinted(*own.front(), entry_.hints(mutant->section));
+    });
+    return std::ranges::any_of(order, [&](const Mutant* mutant) {
+      auto trial = open(mutant->name);
+      if (!trial || !trial->begin()) return false;
+      return std::ranges::any_of(own,
+                                 [&](const Case* one) { return trial->finding(*one).has_value(); });
+    });
+  }
+
+  const Suite& suite_;
+  const MutantsEntry& entry_;
+  const MutationOptions& options_;
+  Cases cases_;
+  MutationResult result_;
+};
+
+ReportRow row_of(const MutantFate& fate, const Suite& suite, const MutationOptions& options) {
+  const auto& mutant = fate.mutant;
+  const bool is_killed = !fate.killer.empty();
+  const bool is_expected = is_killed == mutant.equivalent.empty();
+  ReportRow row;
+  row.name = fmt::format("{}.mutant.{}", suite.device, mutant.name);
+  row.summary = fmt::format("A device with {} is found ({}).", mutant.name, mutant.section);
+  row.verdict = is_killed ? Verdict::kPass : Verdict::kDeviation;
+  if (!is_expected) row.verdict = Verdict::kFail;
+  row.expected =
+      mutant.equivalent.empty() ? "a case that fails" : "to survive: " + mutant.equivalent;
+  row.actual = is_killed                   ? fmt::format("{}: {}", fate.killer, fate.finding)
+               : mutant.equivalent.empty() ? "it survived " + fate.finding
+                                           : "it survived: " + mutant.equivalent;
+  row.repeat = fmt::format("armjig conformance {} --target 'emulated:?fault={}' --profile {}",
+                           suite.device, mutant.name, to_string(options.profile));
+  return row;
+}
+
+ReportSection rates_of(const MutationResult& result) {
+  struct Count {
+    std::size_t all = 0;
+    std::size_t equivalent = 0;
+    std::size_t killed = 0;
+  };
+  std::map<std::string, Count> counts;
+  for (const auto& fate : result.fates) {
+    for (auto* count : {&counts[fate.mutant.section], &counts["all"]}) {
+      ++count->all;
+      count->equivalent += fate.mutant.equivalent.empty() ? 0 : 1;
+      count->killed += fate.killer.empty() || !fate.mutant.equivalent.empty() ? 0 : 1;
+    }
+  }
+  ReportSection section{.title = "Kill rate by section"};
+  section.table.columns = {"section", "mutants", "equivalent", "killed", "rate"};
+  for (const auto& [name, count] : counts) {
+    const auto due = count.all - count.equivalent;
+    const auto rate =
+        due == 0 ? 100.0 : 100.0 * static_cast<double>(count.killed) / static_cast<double>(due);
+    section.table.rows.push_back({name, std::to_string(count.all), std::to_string(count.equivalent),
+                                  std::to_string(count.killed), fmt::format("{:.1f} %", rate)});
+  }
+  return section;
+}
+
+constexpr std::array kMutants{
+    MutantsEntry{"demo", demo::all_mutants, demo::mutant_hints},
+    MutantsEntry{"parol6", parol6::all_mutants, parol6::mutant_hints},
+};
+
+}  // namespace
+
+std::span<const MutantsEntry> mutants() noexcept { return kMutants; }
+
+Outcome<MutationResult> run_mutants(const Suite& suite, const MutantsEntry& entry,
+                                    const MutationOptions& options) {
+  return Mutation{suite, entry, options}.run();
+}
+
+Report to_report(const MutationResult& result, const Suite& suite, const MutationOptions& options) {
+  Report report;
+  report.title = fmt::format("Mutants of {}", suite.device);
+  report.facts = {{"profile", std::string{to_string(options.profile)}},
+                  {"catalogue", std::string{suite.version}},
+                  {"armjig", std::string{kVersion}},
+                  {"mutants", std::to_string(result.fates.size())}};
+  for (const auto& name : result.broken_on_sound) {
+    ReportRow row;
+    row.verdict = Verdict::kError;
+    row.name = name;
+    row.summary = "A case passes on the device without a fault.";
+    row.actual = "it fails, and was left out";
+    report.rows.push_back(std::move(row));
+  }
+  for (const auto& fate : result.fates) report.rows.push_back(row_of(fate, suite, options));
+  for (const auto* requirement : result.unproven) {
+    ReportRow row;
+    row.verdict = Verdict::kFail;
+    row.name = fmt::format("{}.unproven", requirement->id);
+    row.summary = "A must-requirement is broken by at least one mutant.";
+    row.demand = requirement->text;
+    row.actual = "by none";
+    report.rows.push_back(std::move(row));
+  }
+  report.sections.push_back(rates_of(result));
+  return report;
+}
+
+}  // namespace armjig

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/parol6/board_bench.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "harness/core/hex.hpp"
+#include "harness/wire/parol6/dissector.hpp"
+#include "harness/wire/parol6/fields.hpp"
+#include "harness/wire/parol6/readings.hpp"
+
+namespace armjig::parol6 {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Homing takes 31 s where the switches are near.
+constexpr Duration kHomingTime = 90s;
+
+std::int64_t value_of(const Field& field, const TelemetryFrame& frame) {
+  return field_value(field, encode(frame));
+}
+
+const Field& telemetry_field(std::string_view name) {
+  return *find_field(telemetry_fields(), name);
+}
+
+double milliseconds(Duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+}  // namespace
+
+CommandFrame with_code(int code) {
+  CommandFrame frame;
+  frame.command = Command{static_cast<std::uint8_t>(code)};
+  return frame;
+}
+
+CommandFrame idle() { return with_code(255); }
+
+CommandFrame jog(const Speeds& speeds) {
+  auto frame = with_code(123);
+  std::ranges::transform(speeds, frame.speed.begin(),
+                         [](int speed) { return StepsPerSecond{speed}; });
+  return frame;
+}
+
+CommandFrame jog(std::size_t joint, int speed) {
+  Speeds speeds{};
+  speeds[joint] = speed;
+  return jog(speeds);
+}
+
+CommandFrame go_to(const std::array<Steps, kJointCount>& positions, const Speeds& speeds) {
+  auto frame = jog(speeds);
+  frame.command = Command::kGoTo;
+  frame.position = positions;
+  return frame;
+}
+
+CommandFrame with_gripper(const GripperSetPoint& set_point) {
+  auto frame = idle();
+  frame.gripper = set_point;
+  return frame;
+}
+
+BoardBench::BoardBench(Rig rig)
+    : StreamBench{std::move(rig),
+                  *std::ranges::find(dissectors(), "parol6", &DissectorEntry::device)} {}
+
+void BoardBench::forget_exchange() {
+  StreamBench::forget_exchange();
+  about_.clear();
+}
+
+Duration BoardBench::answer_time() const { return std::max<Duration>(250ms, 20 * noise_); }
+Duration BoardBench::silence_time() const { return std::max<Duration>(50ms, 5 * noise_); }
+
+std::optional<Answer> BoardBench::next_answer(Instant asked, Duration within) {
+  const auto message = receive(within);
+  if (!message || !message->fault.empty()) return std::nullopt;
+  Answer answer;
+  static_cast<TelemetryFrame&>(answer) =
+      decode_telemetry(body_of(Bytes{message->raw}.first<kTelemetryFrameSize>()));
+  answer.asked = asked;
+  answer.received = message->time;
+  return answer;
+}
+
+std::string BoardBench::behind(std::string text) const {
+  return about_.empty() ? text : fmt::format("{} ({})", text, about_);
+}
+
+/// Not sooner than a millisecond behind the frame before: the board writes its CAN frames to one
+/// mailbox and loses what comes while that is full.
+Answer BoardBench::ask(const CommandFrame& frame, Duration within) {
+  pause(last_asked_ + 1ms - now());
+  const auto asked = now();
+  last_asked_ = asked;
+  send(encode(frame));
+  const auto answer = next_answer(asked, within);
+  if (!answer) {
+    fail_by_silence(behind("an answer"),
+                    fmt::format("none within {:.0f} ms", milliseconds(within)));
+  }
+  return answer.value_or(Answer{});
+}
+
+std::vector<Answer> BoardBench::ask_together(const std::vector<CommandFrame>& frames) {
+  std::vector<std::byte> bytes;
+  for (const auto& frame : frames) {
+    const auto one = encode(frame);
+    bytes.insert(bytes.end(), one.begin(), one.end());
+  }
+  send(bytes);
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < frames.size(); ++i) answers.push_back(expect_answer());
+  return answers;
+}
+
+Answer BoardBench::act(const CommandFrame& frame) {
+  auto answer = ask(frame);
+  pause(kPassTime);
+  return answer;
+}
+
+Answer BoardBench::keep_asking(const CommandFrame& frame, Duration time) {
+  const auto end = now() + time;
+  auto answer = ask(frame);
+  while (!is_over() && !error() && now() < end) {
+    pause(std::min(kFramePeriod, end - now()));
+    answer = ask(frame);
+  }
+  return answer;
+}
+
+Answer BoardBench::expect_answer() {
+  const auto answer = next_answer(now(), answer_time());
+  if (!answer) {
+    fail(behind("an answer"), fmt::format("none within {:.0f} ms", milliseconds(answer_time())));
+  }
+  return answer.value_or(Answer{});
+}
+
+void BoardBench::expect_silence() {
+  const auto message = receive(silence_time());
+  if (message) fail(behind("no answer"), to_hex_dump(message->raw));
+}
+
+void BoardBench::expect_recovery(int most) {
+  for (int i = 0; i < most && !is_over() && !error(); ++i) {
+    send(encode(idle()));
+    if (!next_answer(now(), silence_time())) continue;
+    drain(silence_time());
+    return;
+  }
+  fail(behind(fmt::format("an answer within {} good frames", most)), "silence");
+}
+
+void BoardBench::expect(const TelemetryFrame& answer, std::string_view field, std::int64_t wanted) {
+  expect_between(answer, field, wanted, wanted);
+}
+
+void BoardBench::expect_bits(const TelemetryFrame& answer, std::string_view field,
+                             std::uint8_t mask, std::uint8_t wanted) {
+  const auto value = value_of(telemetry_field(field), answer);
+  expect(answer, field, (value & ~std::int64_t{mask}) | wanted);
+}
+
+void BoardBench::expect_same(const TelemetryFrame& answer, std::string_view field,
+                             const TelemetryFrame& before) {
+  expect(answer, field, value_of(telemetry_field(field), before));
+}
+
+void BoardBench::expect_between(const TelemetryFrame& answer, std::string_view name,
+                                std::int64_t least, std::int64_t most) {
+  if (is_over()) return;
+  const auto& field = telemetry_field(name);
+  const auto value = value_of(field, answer);
+  if (value >= least && value <= most) return;
+  const auto wanted = least == most ? field_text(field, least)
+                                    : fmt::format("{} to {}", least, field_text(field, most));
+  fail(behind(fmt::format("{} = {}", name, wanted)),
+       fmt::format("{} = {}", name, field_text(field, value)));
+}
+
+void BoardBench::expect_true(bool is_so, std::string_view wanted, std::string_view otherwise) {
+  if (!is_so) fail(behind(std::string{wanted}), std::string{otherwise});
+}
+
+/// Asks until the board answers, for it may wait for the rest of what it took for a long frame.
+bool BoardBench::is_alive() {
+  constexpr int kMostTries = 12;
+  drain(10ms);
+  for (int i = 0; i < kMostTries && !error(); ++i) {
+    send(encode(idle()));
+    if (!next_answer(now(), i == 0 ? answer_time() : silence_time())) continue;
+    drain(10ms);
+    return true;
+  }
+  return false;
+}
+
+void BoardBench::measure_noise() {
+  constexpr int kSamples = 40;
+  for (int i = 0; i < kSamples && !error(); ++i) {
+    pause(1000us + i * 37us);
+    const auto asked = now();
+    send(encode(idle()));
+    if (const auto answer = next_answer(asked, answer_time())) {
+      noise_ = std::max(noise_, answer->received - asked);
+    }
+  }
+}
+
+void BoardBench::bring_to(std::size_t start) {
+  if (std::exchange(is_spoiled_, false) || start == kFresh) power_cycle();
+  if (start == kFresh) return;  // its first answer is for the case
+  if (!is_alive()) fail_by_silence("an answer", "silence");
+  if (start == kHomed || start == kEnabled) enable();
+  if (start == kHomed) home();
+  if (start == kEnabled) walk_back();
+}
+
+void BoardBench::spoil() {
+  touch("in1", 0);  // as it is anyway; it shows whether there is a hand
+  is_spoiled_ = is_spoiled_ || !is_over();
+}
+
+void BoardBench::power_cycle() {
+  put_back_surroundings();
+  touch("power", 1);
+  pause(1s);
+  origin_.reset();
+}
+
+void BoardBench::put_back_surroundings() {
+  struct Input {
+    std::string_view name;
+    std::int64_t value;
+  };
+  for (const auto& [name, value] :
+       {Input{"estop", 1}, {"in1", 0}, {"in2", 0}, {"between-fingers", -1}}) {
+    touch(name, value);
+  }
+  constexpr int kBesideSwitch = 1000;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    touch(fmt::format("switch.j{}", j + 1), 0);
+    touch(fmt::format("position.j{}", j + 1),
+          kStandby[j].value + (j + 1 == kJointCount ? kBesideSwitch : 0));
+  }
+}
+
+void BoardBench::enable() {
+  act(with_code(101));
+  act(idle());
+  const auto answer = act(idle());
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    expect(answer, fmt::format("speed.j{}", j + 1), 0);
+  }
+}
+
+/// Cases drive unhomed joints to and fro; what remains must not add up until a switch is hit.
+void BoardBench::walk_back() {
+  constexpr int kNear = 20;
+  constexpr int kMost = 1500;  // what a guard lets pass for every joint
+  auto answer = ask(idle());
+  if (!origin_) origin_ = is_homed(answer) ? kStandby : answer.position;
+  const auto is_back = [&](const Answer& now) {
+    return std::ranges::equal(now.position, *origin_, [](Steps a, Steps b) {
+      return std::abs(a.value - b.value) <= kNear;
+    });
+  };
+  const auto end = now() + 20s;
+  while (!is_back(answer) && !is_over() && !error() && now() < end) {
+    Speeds speeds{};
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const auto way = (*origin_)[j].value - answer.position[j].value;
+      if (std::abs(way) > kNear) speeds[j] = std::clamp(way * 8, -kMost, kMost);
+    }
+    answer = ask(jog(speeds));
+    pause(kFramePeriod);
+  }
+  act(idle());
+}
+
+/// A 100 only once, then idle frames: a 100 that is held homes again and again. Homes once even if
+/// the arm is homed, for cases look at how it went.
+void BoardBench::home() {
+  if (homing_log_.empty() || !is_homed(ask(idle()))) {
+    homing_log_ = {ask(idle())};
+    act(with_code(100));
+    const auto finished = ask_until(
+        idle(),
+        [this](const Answer& answer) {
+          homing_log_.push_back(answer);
+          return is_homed(answer);
+        },
+        kHomingTime);
+    if (!finished) fail("all joints homed", "not within 90 s");
+    origin_ = kStandby;
+    act(idle());
+  }
+  walk_to_standby();
+}
+
+/// In pieces, for the board would close any distance in 10 ms if it could.
+void BoardBench::walk_to_standby() {
+  constexpr int kPiece = 60;
+  constexpr int kMostPieces = 5000;
+  auto position = ask(idle()).position;
+  for (int i = 0; i < kMostPieces && position != kStandby && !is_over() && !error(); ++i) {
+    auto target = position;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      target[j].value += std::clamp(kStandby[j].value - position[j].value, -kPiece, kPiece);
+    }
+    position = ask(go_to(target)).position;
+    pause(kFramePeriod);
+  }
+  act(idle());
+}
+
+}  // namespace armjig::parol6

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/stream_bench.hpp"
+#include "harness/core/time.hpp"
+#include "harness/wire/parol6/frame.hpp"
+
+namespace armjig::parol6 {
+
+/// The states in which cases begin, as indices into the suite's `starts`.
+enum Start : std::uint8_t {
+  kListening,  ///< answers idle frames
+  kFresh,      ///< just switched on
+  kHomed,      ///< homed, at its standby position, enabled
+  kEnabled,    ///< enabled, standing, speeds 0, outputs off; homed or not, but where it was homed
+               ///< if it may be: cases here begin to home, and must not meet a switch
+};
+
+/// Where homing leaves the counters.
+inline constexpr std::array<Steps, kJointCount> kStandby{Steps{10240}, Steps{-32000}, Steps{57905},
+                                                         Steps{0},     Steps{0},      Steps{32000}};
+
+/// A telemetry frame and when it came. The board made it between `asked` and `received`.
+struct Answer : TelemetryFrame {
+  Instant asked{};     ///< when the last byte of the frame that it answers was handed over
+  Instant received{};  ///< when its own last byte had come
+};
+
+// Frames with the board's own check byte, which every profile takes.
+[[nodiscard]] CommandFrame with_code(int code);
+[[nodiscard]] CommandFrame idle();
+using Speeds = std::array<int, kJointCount>;  ///< steps/s
+[[nodiscard]] CommandFrame jog(const Speeds& speeds);
+[[nodiscard]] CommandFrame jog(std::size_t joint, int speed);
+/// Positions are absolute counts.
+[[nodiscard]] CommandFrame go_to(const std::array<Steps, kJointCount>& positions,
+                                 const Speeds& speeds = {});
+
+/// Idle, with something for the gripper.
+[[nodiscard]] CommandFrame with_gripper(const GripperSetPoint& set_point);
+
+/// A conversation with a PAROL6 board, in the words of its protocol.
+class BoardBench final : public StreamBench {
+ public:
+  explicit BoardBench(Rig rig);
+
+  [[nodiscard]] bool is_alive() override;
+  void bring_to(std::size_t start) override;
+  void measure_noise() override;
+  [[nodiscard]] Duration noise() const override { return noise_; }
+
+  /// Sends a frame and takes its answer. None in time is a silence (`Bench::fail_by_silence`).
+  Answer ask(const CommandFrame& frame) { return ask(frame, answer_time()); }
+  Answer ask(const CommandFrame& frame, Duration within);
+  /// Sends several frames in one write and takes an answer to each.
+  std::vector<Answer> ask_together(const std::vector<CommandFrame>& frames);
+  /// `ask`, then time for the board to act on it.
+  Answer act(const CommandFrame& frame);
+  /// Repeats a frame every 10 ms for a time and gives the last answer.
+  Answer keep_asking(const CommandFrame& frame, Duration time);
+  /// Repeats a frame every 10 ms until `is_reached` holds for an answer; none if it does not within
+  /// the time, which is no finding yet.
+  template <class Condition>
+  std::optional<Answer> ask_until(const CommandFrame& frame, Condition is_reached,
+                                  Duration within) {
+    const auto deadline = now() + within;
+    while (!is_over() && !error() && now() < deadline) {
+      auto answer = ask(frame);
+      if (!is_over() && is_reached(answer)) return answer;
+      pause(kFramePeriod);
+    }
+    return std::nullopt;
+  }
+
+  /// What comes next is about this: it stands behind every expectation until it is said anew.
+  void about(std::string what) { about_ = std::move(what); }
+
+  /// Expects one answer to what was sent, now.
+  Answer expect_answer();
+  /// Expects none.
+  void expect_silence();
+  /// Sends idle frames until one is answered, at most `most`; behind `about`.
+  void expect_recovery(int most);
+
+  /// Expects a field of telemetry, by its name in docs/spec, to have a value.
+  void expect(const TelemetryFrame& answer, std::string_view field, std::int64_t wanted);
+  /// Expects some bits of a flag field.
+  void expect_bits(const TelemetryFrame& answer, std::string_view field, std::uint8_t mask,
+                   std::uint8_t wanted);
+  void expect_between(const TelemetryFrame& answer, std::string_view field, std::int64_t least,
+                      std::int64_t most);
+  void expect_same(const TelemetryFrame& answer, std::string_view field,
+                   const TelemetryFrame& before);
+  void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
+
+  /// All answers of the last whole run of homing, 10 ms apart or less, the first one from before.
+  [[nodiscard]] const std::vector<Answer>& homing_log() const noexcept { return homing_log_; }
+
+  /// Time in which an answer has to come.
+  [[nodiscard]] Duration answer_time() const;
+  /// Time after which none will.
+  [[nodiscard]] Duration silence_time() const;
+  /// The board is switched off and on before the next case, and all around it put back, for this
+  /// one leaves traces that no command takes away. Skips the case where nobody can do that, which
+  /// is also where a guard would not let it pass.
+  void spoil();
+
+  static constexpr Duration kFramePeriod = std::chrono::milliseconds{10};
+  /// Longer than two passes of any board's loop.
+  static constexpr Duration kPassTime = std::chrono::milliseconds{2};
+
+ protected:
+  void forget_exchange() override;
+
+ private:
+  [[nodiscard]] std::optional<Answer> next_answer(Instant asked, Duration within);
+  void power_cycle();
+  void put_back_surroundings();
+  void enable();
+  void walk_back();
+  void home();
+  void walk_to_standby();
+  [[nodiscard]] std::string behind(std::string text) const;
+
+  std::string about_;
+  std::vector<Answer> homing_log_;
+  std::optional<std::array<Steps, kJointCount>> origin_;  ///< where `kEnabled` cases begin
+  Instant last_asked_{};
+  Duration noise_{};
+  bool is_spoiled_ = false;
+};
+
+}  // namespace armjig::parol6

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "conformance/parol6/board_bench.hpp"
+#include "conformance/parol6/chapters.hpp"
+#include "conformance/parol6/motion.hpp"
+
+namespace armjig::parol6 {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kJ5 = 4;
+constexpr std::size_t kJ6 = 5;
+
+/// Jogs a joint there and back, so that cases leave the arm where it was.
+void expect_jog(BoardBench& board, std::size_t joint, int speed, Duration time) {
+  expect_speed(board, run(board, jog(joint, speed), time), joint, speed);
+  board.keep_asking(jog(joint, -speed), time);
+  board.act(idle());
+}
+
+void own_joint(BoardBench& board) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    board.about(fmt::format("a jog of j{}", j + 1));
+    const auto stretch = run(board, jog(j, 1000), 60ms);
+    board.keep_asking(jog(j, -1000), 60ms);
+    board.act(idle());
+    expect_speed(board, stretch, j, 1000);
+    for (std::size_t other = 0; other < kJointCount; ++other) {
+      if (other != j) board.expect_same(stretch.after, position_field(other), stretch.before);
+    }
+  }
+}
+
+void all_together(BoardBench& board) {
+  constexpr Speeds kSpeeds{300, -400, 500, -600, 700, -800};
+  constexpr Speeds kBack{-300, 400, -500, 600, -700, 800};
+  const auto stretch = run(board, jog(kSpeeds), 200ms);
+  board.keep_asking(jog(kBack), 200ms);
+  board.act(idle());
+  for (std::size_t j = 0; j < kJointCount; ++j) expect_speed(board, stretch, j, kSpeeds[j]);
+}
+
+void expect_directions(BoardBench& board, int speed) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto stretch = run(board, jog(j, speed), 40ms);
+    board.keep_asking(jog(j, -speed), 40ms);
+    board.act(idle());
+    board.expect_true(steps(stretch, j) * speed > 0,
+                      fmt::format("j{} to count {}", j + 1, speed > 0 ? "up" : "down"),
+                      fmt::format("{} steps", steps(stretch, j)));
+  }
+}
+
+void forward(BoardBench& board) { expect_directions(board, 800); }
+void backward(BoardBench& board) { expect_directions(board, -800); }
+
+void speed(BoardBench& board) {
+  for (const int value : {150, 256, 1000, 1500}) expect_jog(board, 0, value, 500ms);
+}
+
+void slow(BoardBench& board) {
+  for (const int value : {3, 7, 20}) expect_jog(board, kJ6, value, 2s);
+}
+
+void fast(BoardBench& board) {
+  constexpr Speeds kMost{1500, 3000, 3600, 7000, 7000, 18'000};
+  for (std::size_t j = 0; j < kJointCount; ++j) expect_jog(board, j, kMost[j], 100ms);
+}
+
+void no_ramp(BoardBench& board) {
+  const auto before = board.act(idle());
+  board.act(jog(kJ6, 10'000));
+  board.pause(8ms);
+  const auto after = board.ask(jog(kJ6, 10'000));
+  board.keep_asking(jog(kJ6, -10'000), 10ms);
+  board.act(idle());
+  board.about("10 ms after rest, at 10000 steps/s");
+  board.expect(after, "speed.j6", 10'000);
+  board.expect_between(after, "position.j6", before.position[kJ6].value + 45, INT32_MAX);
+}
+
+void first_step(BoardBench& board) {
+  board.keep_asking(idle(), 600ms);
+  const auto before = board.act(jog(kJ5, 2));
+  const auto after = board.ask(jog(kJ5, 2));
+  board.act(idle());
+  board.about("600 ms after the last step, right after the first frame of a jog at 2 steps/s");
+  board.expect(after, "position.j5", before.position[kJ5].value + 1);
+}
+
+void zero(BoardBench& board) { expect_still(board, jog({}), 200ms); }
+
+void reported(BoardBench& board) {
+  constexpr Speeds kSpeeds{101, -102, 103, -104, 105, -106};
+  const auto answer = run(board, jog(kSpeeds), 20ms).after;
+  board.keep_asking(jog({-101, 102, -103, 104, -105, 106}), 20ms);
+  board.act(idle());
+  expect_reported(board, answer, kSpeeds);
+}
+
+void change(BoardBench& board) {
+  for (const int value : {200, 900, 300, 1500}) {
+    board.about(fmt::format("a jog that has changed to {} steps/s", value));
+    expect_speed(board, run(board, jog(kJ5, value), 100ms), kJ5, value);
+  }
+  board.keep_asking(jog(kJ5, -1500), 200ms);
+  board.act(idle());
+}
+
+void reverse(BoardBench& board) {
+  for (int i = 0; i < 3; ++i) {
+    for (const int value : {1200, -1200}) {
+      board.about(fmt::format("a jog that has turned to {} steps/s", value));
+      expect_speed(board, run(board, jog(kJ5, value), 50ms), kJ5, value);
+    }
+  }
+  board.act(idle());
+}
+
+void ignores_positions(BoardBench& board) {
+  auto frame = jog(kJ5, 400);
+  frame.position = {Steps{1}, Steps{-2}, Steps{8'388'607}, Steps{-8'388'608}, Steps{5}, Steps{6}};
+  const auto stretch = run(board, frame, 100ms);
+  board.keep_asking(jog(kJ5, -400), 100ms);
+  board.act(idle());
+  expect_speed(board, stretch, kJ5, 400);
+  board.expect_same(stretch.after, "position.j1", stretch.before);
+  board.expect_same(stretch.after, "position.j3", stretch.before);
+}
+
+void keeps_homed(BoardBench& board) {
+  const auto before = board.ask(idle());
+  const auto stretch = run(board, jog({100, 100, 100, 100, 100, 100}), 50ms);
+  board.expect_same(stretch.after, "homed", before);
+  board.act(idle());
+}
+
+/// The speed that is reported, and the steps that are made.
+void expect_clamped(BoardBench& board, std::size_t joint, int speed, int most) {
+  board.about(fmt::format("a jog of j{} at {} steps/s", joint + 1, speed));
+  const auto stretch = run(board, jog(joint, speed), 20ms);
+  board.keep_asking(jog(joint, -speed), 20ms);
+  board.act(idle());
+  board.expect(stretch.after, speed_field(joint), most);
+  expect_speed(board, stretch, joint, most);
+}
+
+void clamp(BoardBench& board) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    expect_clamped(board, j, 60'000, 50'000);
+    expect_clamped(board, j, -60'000, -50'000);
+  }
+}
+
+void clamp_of_table(BoardBench& board) {
+  constexpr Speeds kMost{6500, 18'000, 20'000, 22'000, 22'000, 22'000};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    expect_clamped(board, j, 30'000, kMost[j]);
+    expect_clamped(board, j, -30'000, -kMost[j]);
+  }
+}
+
+void unlimited(BoardBench& board) {
+  board.spoil();  // a guard would not let it go there; so it is an emulated one
+  const auto is_outside = [](const Answer& answer) { return answer.position[kJ5].value > 6800; };
+  board.about("a jog beyond 6400");
+  board.expect_true(board.ask_until(jog(kJ5, 7000), is_outside, 3s).has_value(),
+                    "j5 to go beyond 6800 steps", "it does not");
+  board.act(idle());
+}
+
+void no_catch_up(BoardBench& board) {
+  board.act(jog(kJ5, 100));
+  board.act(with_code(42));
+  board.pause(450ms);
+  const auto before = board.act(jog(kJ5, 100));
+  const auto after = board.ask(jog(kJ5, 100));
+  board.act(idle());
+  board.about("a jog at 100 steps/s that has paused for 450 ms");
+  const auto most = 2 + (after.received - before.asked) / 10ms;
+  board.expect_between(after, "position.j5", before.position[kJ5].value,
+                       before.position[kJ5].value + most);
+}
+
+/// J1 backs off forward while -2050 is set; a jog at -2050 does not turn it round.
+void same_speed(BoardBench& board) {
+  board.spoil();
+  board.touch("position.j1", -3000);
+  board.touch("position.j2", -51'400);
+  board.touch("position.j3", 35'000);
+  board.act(with_code(100));
+  const auto backs_off = [before = std::optional<Steps>{}](const Answer& answer) mutable {
+    const auto last = std::exchange(before, answer.position[0]);
+    return answer.speed[0].value == -2050 && last && answer.position[0].value > last->value;
+  };
+  board.about("homing that has reached the switches of J1 to J3");
+  if (!board.ask_until(idle(), backs_off, 5s)) board.fail("j1 to back off", "it does not");
+  const auto stretch = run(board, jog(0, -2050), 100ms);
+  board.about("a jog of j1 at -2050 out of its back-off");
+  expect_speed(board, stretch, 0, 2050);
+}
+
+constexpr Case kCases[] = {
+    {.requirement = "parol6.jog.own-joint",
+     .rule = "Six jogs move six joints.",
+     .run = on<own_joint>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.all-together",
+     .rule = "Six joints jog at six speeds in one frame.",
+     .run = on<all_together>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.forward",
+     .rule = "Each joint counts up at a positive speed.",
+     .run = on<forward>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.backward",
+     .rule = "Each joint counts down at a negative speed.",
+     .run = on<backward>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.speed",
+     .rule = "J1 makes the steps of four speeds.",
+     .run = on<speed>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.slow",
+     .rule = "J6 makes the steps of 3, 7 and 20 steps/s.",
+     .run = on<slow>,
+     .hazard = Hazard::kMove,
+     .tier = Tier::kFull,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.fast",
+     .rule = "Each joint makes the steps of its highest jog speed.",
+     .run = on<fast>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.no-ramp",
+     .rule = "J6 has made 45 steps 10 ms after rest.",
+     .run = on<no_ramp>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.first-step",
+     .rule = "A very slow jog makes its first step at once.",
+     .run = on<first_step>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.zero",
+     .rule = "A jog without speeds moves nothing.",
+     .run = on<zero>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.reported",
+     .rule = "Six speeds come back in a jog.",
+     .run = on<reported>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.change",
+     .rule = "A jog changes its speed three times.",
+     .run = on<change>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.reverse",
+     .rule = "A jog turns round six times.",
+     .run = on<reverse>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.ignores-positions",
+     .rule = "A jog with extreme positions is a jog.",
+     .run = on<ignores_positions>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.keeps-homed",
+     .rule = "A homed arm is still homed after a jog.",
+     .run = on<keeps_homed>,
+     .hazard = Hazard::kMove,
+     .start = kHomed},
+    {.requirement = "parol6.jog.clamp",
+     .rule = "Each joint jogs at 50,000 when told 60,000, both ways.",
+     .run = on<clamp>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.clamp-of-table",
+     .rule = "Each joint jogs at its own maximum when told 30,000, both ways.",
+     .run = on<clamp_of_table>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.jog.unlimited",
+     .rule = "J5 goes beyond 6800 steps.",
+     .run = on<unlimited>,
+     .hazard = Hazard::kMove,
+     .start = kHomed},
+    {.requirement = "parol6.step.no-catch-up",
+     .rule = "A jog that has paused goes on where it was.",
+     .run = on<no_catch_up>,
+     .hazard = Hazard::kMove,
+     .start = kEnabled},
+    {.requirement = "parol6.step.same-speed-keeps-direction",
+     .rule = "J1 goes on forward when a jog says -2050 while it backs off.",
+     .run = on<same_speed>,
+     .hazard = Hazard::kHome,
+     .start = kEnabled},
+};
+
+}  // namespace
+
+std::span<const Case> jog_cases() noexcept { return kCases; }
+
+}  // namespace armjig::parol6

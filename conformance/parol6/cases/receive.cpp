@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "conformance/parol6/board_bench.hpp"
+#include "conformance/parol6/chapters.hpp"
+#include "conformance/parol6/motion.hpp"
+
+namespace armjig::parol6 {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Lengths at which the end bytes fall into no field that does anything.
+constexpr int kOtherLengths[] = {3, 12, 21, 36, 40, 51, 53, 60, 255};
+
+/// A frame of any length: as much of `frame` as fits, filled up with 55, and the end bytes.
+std::vector<std::byte> with_length(const CommandFrame& frame, int length) {
+  const auto whole = encode(frame);
+  std::vector<std::byte> bytes(kHeaderSize + static_cast<std::size_t>(length), std::byte{0x55});
+  const auto brought = std::min<std::size_t>(bytes.size(), kHeaderSize + kCommandBodySize);
+  std::copy_n(whole.begin(), brought, bytes.begin());
+  bytes[kHeaderSize - 1] = static_cast<std::byte>(length);
+  std::ranges::copy(kEndBytes, bytes.end() - kEndBytes.size());
+  return bytes;
+}
+
+CommandFrame idle_with(const Speeds& speeds) {
+  auto frame = jog(speeds);
+  frame.command = Command::kIdle;
+  return frame;
+}
+
+void any_length(BoardBench& board) {
+  for (const auto length : kOtherLengths) {
+    board.ask(idle());
+    board.about(fmt::format("an idle frame of length {}", length));
+    board.send(with_length(idle(), length));
+    board.expect(board.expect_answer(), "echo", 255);
+  }
+  board.act(idle());
+}
+
+void one_length(BoardBench& board) {
+  for (const auto length : kOtherLengths) {
+    board.about(fmt::format("an idle frame of length {}", length));
+    board.send(with_length(idle(), length));
+    board.expect_silence();
+    board.about(fmt::format("the frame behind one of length {}", length));
+    board.ask(idle());
+  }
+}
+
+void shortest(BoardBench& board) {
+  board.act(with_code(42));
+  board.about("FF FF FF 02 01 02 after code 42");
+  board.send(with_length(idle(), 2));
+  board.expect(board.expect_answer(), "echo", 42);
+  board.act(idle());
+}
+
+/// Length 24 brings the positions and the speeds of J1 and J2, the end bytes being part of J2's.
+Answer half_of_the_speeds(BoardBench& board) {
+  board.act(idle_with({11, 12, 13, 14, 15, 16}));
+  board.about("idle with speeds 11 to 16, then length 24 with j1 = 99");
+  board.send(with_length(idle_with({99, 0, 0, 0, 0, 0}), 24));
+  board.expect_answer();
+  board.pause(BoardBench::kPassTime);
+  return board.ask(with_code(42));
+}
+
+void store_stays(BoardBench& board) {
+  const auto answer = half_of_the_speeds(board);
+  board.expect(answer, "speed.j1", 99);
+  for (int j = 2; j < 6; ++j) {
+    board.expect(answer, speed_field(static_cast<std::size_t>(j)), 11 + j);
+  }
+  board.act(idle());
+}
+
+void end_in_field(BoardBench& board) {
+  board.expect(half_of_the_speeds(board), "speed.j2", 0x0102);
+  board.act(idle());
+}
+
+void dropped_stays(BoardBench& board) {
+  board.act(idle());
+  auto dropped = encode(idle_with({21, 22, 23, 24, 25, 26}));
+  dropped.back() = std::byte{3};
+  board.about("a dropped idle frame with speeds 21 to 26, then FF FF FF 02 01 02");
+  board.send(dropped);
+  board.expect_silence();
+  board.send(with_length(idle(), 2));
+  board.expect_answer();
+  board.pause(BoardBench::kPassTime);
+  expect_reported(board, board.ask(with_code(42)), {21, 22, 23, 24, 25, 26});
+  board.act(idle());
+}
+
+void long_tail(BoardBench& board) {
+  board.about("an idle frame of length 60 with speeds 31 to 36");
+  board.send(with_length(idle_with({31, 32, 33, 34, 35, 36}), 60));
+  board.expect(board.expect_answer(), "echo", 255);
+  board.pause(BoardBench::kPassTime);
+  expect_reported(board, board.ask(with_code(42)), {31, 32, 33, 34, 35, 36});
+  board.act(idle());
+}
+
+constexpr std::byte kLengthZero[] = {kStartByte, kStartByte, kStartByte, std::byte{0}};
+
+void length_zero(BoardBench& board) {
+  board.spoil();
+  board.send(kLengthZero);
+  board.about("255 bytes behind a length of 0");
+  board.send(std::vector(255, std::byte{0x55}));
+  board.expect_silence();
+  board.about("the payload of a frame, as its 256th byte says 52");
+  board.send(Bytes{encode(with_code(42))}.subspan(kHeaderSize - 1));
+  board.expect(board.expect_answer(), "echo", 42);
+}
+
+void length_zero_harmless(BoardBench& board) {
+  board.spoil();
+  board.about("a good frame behind FF FF FF 00");
+  board.send(kLengthZero);
+  board.send(encode(idle()));
+  board.expect_answer();
+}
+
+void length_one(BoardBench& board) {
+  for (const auto byte : {std::byte{1}, std::byte{2}, std::byte{0x55}}) {
+    board.about("FF FF FF 01 and a byte");
+    board.send(std::vector{kStartByte, kStartByte, kStartByte, std::byte{1}, byte});
+    board.expect_silence();
+    board.about("the frame behind one of length 1");
+    board.send(encode(idle()));
+    board.expect_answer();
+  }
+}
+
+void stray_start(BoardBench& board) {
+  board.send(std::vector{kStartByte});
+  for (int i = 1; i <= 5; ++i) {
+    board.about(fmt::format("frame {} behind a stray FF", i));
+    board.send(encode(idle()));
+    board.expect_silence();
+  }
+  board.about("frame 6 behind a stray FF");
+  board.send(encode(idle()));
+  board.expect_answer();
+}
+
+void resync(BoardBench& board) {
+  for (const std::size_t size : {1U, 2U, 3U, 7U, 300U}) {
+    board.about(fmt::format("a good frame behind {} start bytes", size));
+    board.send(std::vector(size, kStartByte));
+    board.send(encode(idle()));
+    board.expect_answer();
+  }
+}
+
+void send_cut(BoardBench& board, std::size_t size) {
+  board.send(Bytes{encode(idle())}.first(size));
+}
+
+void cut_short(BoardBench& board) {
+  for (const std::size_t size : {4U, 30U, 54U}) {
+    send_cut(board, size);
+    board.about(fmt::format("the first frame behind one cut after {} bytes", size));
+    board.send(encode(idle()));
+    board.expect_silence();
+    for (const auto* which : {"second", "third"}) {
+      board.about(fmt::format("the {} frame behind one cut after {} bytes", which, size));
+      board.send(encode(idle()));
+      board.expect_answer();
+    }
+  }
+}
+
+void cut_harmless(BoardBench& board) {
+  for (const std::size_t size : {4U, 30U, 54U}) {
+    send_cut(board, size);
+    board.about(fmt::format("the first frame behind one cut after {} bytes", size));
+    board.send(encode(idle()));
+    board.expect_answer();
+  }
+}
+
+constexpr Case kCases[] = {
+    {.requirement = "parol6.receive.any-length",
+     .rule = "Idle frames of nine lengths are answered.",
+     .run = on<any_length>},
+    {.requirement = "parol6.receive.one-length",
+     .rule = "Idle frames of nine lengths are not answered.",
+     .run = on<one_length>},
+    {.requirement = "parol6.receive.shortest",
+     .rule = "Six bytes poll a board that does nothing.",
+     .run = on<shortest>},
+    {.requirement = "parol6.receive.store-stays",
+     .rule = "A frame of length 24 leaves four speeds as they were.",
+     .run = on<store_stays>},
+    {.requirement = "parol6.receive.dropped-stays",
+     .rule = "The shortest frame uncovers the speeds of a dropped one.",
+     .run = on<dropped_stays>},
+    {.requirement = "parol6.receive.end-in-field",
+     .rule = "The end bytes of a frame of length 24 become the speed of J2.",
+     .run = on<end_in_field>},
+    {.requirement = "parol6.receive.long-tail",
+     .rule = "A frame of length 60 sets the speeds of its first 50 bytes.",
+     .run = on<long_tail>},
+    {.requirement = "parol6.receive.length-zero",
+     .rule = "The 256th byte behind a length of 0 is the next length.",
+     .run = on<length_zero>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "parol6.receive.length-zero-harmless",
+     .rule = "A length of 0 costs no good frame.",
+     .run = on<length_zero_harmless>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "parol6.receive.length-one",
+     .rule = "A length of 1 gets no answer and costs no good frame.",
+     .run = on<length_one>},
+    {.requirement = "parol6.receive.stray-start",
+     .rule = "The sixth frame behind a stray start byte is the first to be answered.",
+     .run = on<stray_start>},
+    {.requirement = "parol6.receive.resync",
+     .rule = "Runs of start bytes in front of a good frame cost nothing.",
+     .run = on<resync>},
+    {.requirement = "parol6.receive.cut-short",
+     .rule = "A frame cut short takes the next one with it, and no more.",
+     .run = on<cut_short>},
+    {.requirement = "parol6.receive.cut-harmless",
+     .rule = "The frame behind one cut short is answered.",
+     .run = on<cut_harmless>},
+};
+
+}  // namespace
+
+std::span<const Case> receive_cases() noexcept { return kCases; }
+
+}  // namespace armjig::parol6

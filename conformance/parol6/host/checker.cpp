@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/parol6/host/checker.hpp"
+
+#include <utility>
+#include <variant>
+
+#include "conformance/parol6/host/conduct.hpp"
+#include "conformance/parol6/host/fields.hpp"
+#include "conformance/parol6/host/framing.hpp"
+#include "conformance/parol6/host/pace.hpp"
+#include "harness/wire/parol6/splitter.hpp"
+
+namespace armjig::parol6 {
+namespace {
+
+class HostChecker final : public ProgramChecker {
+ public:
+  explicit HostChecker(const LinkNoise& noise)
+      : framing_{complain_, noise.most}, pace_{noise.most}, conduct_{noise.most} {}
+
+  void to_device(Instant time, Bytes bytes) override {
+    now_ = time;
+    framing_.feed(time, bytes, [this](const CommandFrame& frame) { judge(frame); });
+  }
+
+  void from_device(Instant time, Bytes bytes) override {
+    now_ = time;
+    while (!bytes.empty()) {
+      const auto step = telemetry_.step(bytes);
+      bytes = bytes.subspan(step.used);
+      const auto* frame = std::get_if<Splitter::Frame>(&step.found);
+      if (frame == nullptr) continue;
+      conduct_.telemetry(time,
+                         decode_telemetry(body_of(frame->bytes.first<kTelemetryFrameSize>())));
+    }
+  }
+
+  void finish(Instant time) override {
+    now_ = time;
+    conduct_.finish(time, complain_);
+  }
+
+  [[nodiscard]] std::size_t messages() const noexcept override { return frames_; }
+
+ private:
+  void judge(const CommandFrame& frame) {
+    judge_fields(frame, frames_ == 0, complain_);
+    const auto& telemetry = conduct_.last_telemetry();
+    gripper_.judge(frame, telemetry ? std::optional{telemetry->gripper} : std::nullopt, complain_);
+    pace_.judge(now_, complain_);
+    conduct_.command(now_, frame, complain_);
+    ++frames_;
+  }
+
+  Complain complain_ = [this](std::string_view requirement, std::string what) {
+    add(now_, requirement, std::move(what));
+  };
+  Instant now_{};
+  std::size_t frames_ = 0;
+  Framing framing_;
+  GripperConduct gripper_;
+  Pace pace_;
+  Conduct conduct_;
+  Splitter telemetry_{kTelemetryPayloadSize};
+};
+
+}  // namespace
+
+std::unique_ptr<ProgramChecker> make_host_checker(const LinkNoise& noise) {
+  return std::make_unique<HostChecker>(noise);
+}
+
+}  // namespace armjig::parol6

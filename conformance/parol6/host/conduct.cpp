@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/parol6/host/conduct.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "harness/wire/parol6/joint_bounds.hpp"
+#include "harness/wire/parol6/readings.hpp"
+
+namespace armjig::parol6 {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// In which a program has to see that the emergency stop is pressed, and a joint at its bound.
+constexpr Duration kReaction = 100ms;
+constexpr Duration kLongestGap = 100ms;
+/// Frames that come together after that much for each of them were held up by the link.
+constexpr Duration kShortPeriod = 8ms;
+constexpr Duration kLongestHome = 1s;
+/// A set-point that is repeated so long is where the move ends.
+constexpr Duration kRest = 200ms;
+constexpr Duration kEffect = 500ms;
+/// Slower joints may stand for longer than `kEffect`.
+constexpr std::int32_t kNoticeable = 10;
+
+/// The most that either of the known hosts asks for; the GUI's and the Python API's tables differ.
+constexpr std::array<StepsPerSecond, kJointCount> kFastest{
+    StepsPerSecond{15'000}, StepsPerSecond{25'000}, StepsPerSecond{32'000},
+    StepsPerSecond{22'000}, StepsPerSecond{22'000}, StepsPerSecond{27'000}};
+
+constexpr bool moves(Command command) noexcept {
+  return command == Command::kHome || command == Command::kJog || command == Command::kGoTo;
+}
+
+constexpr bool ends_homing(Command command) noexcept {
+  return command == Command::kEnable || command == Command::kDisable ||
+         command == Command::kClearError || command == Command::kJog || command == Command::kGoTo;
+}
+
+/// The same but for what goes along with any command.
+bool is_same_motion(const CommandFrame& a, const CommandFrame& b) noexcept {
+  const bool minds_position = a.command == Command::kGoTo;
+  return a.command == b.command && a.speed == b.speed &&
+         (!minds_position || a.position == b.position);
+}
+
+bool has_speed(const CommandFrame& frame) noexcept {
+  return std::ranges::any_of(frame.speed, [](StepsPerSecond speed) { return speed.value != 0; });
+}
+
+/// In steps/s (parol6.goto.law).
+double go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept {
+  return (100.0 * (goal.value - position.value) + feed.value) / 2;
+}
+
+double milliseconds(Duration duration) {
+  return std::chrono::duration<double, std::milli>{duration}.count();
+}
+
+int code(Command command) noexcept { return static_cast<int>(command); }
+
+}  // namespace
+
+bool Conduct::is_arm_homed() const noexcept { return telemetry_ && is_homed(*telemetry_); }
+
+/// Whether the last frame makes joints move, and goes on doing so.
+bool Conduct::has_joints_move() const noexcept {
+  if (!latched_ || !telemetry_ || !is_enabled_) return false;
+  switch (latched_->command) {
+    case Command::kJog:
+      return has_speed(*latched_);
+    case Command::kGoTo:
+      return latched_->position != telemetry_->position;
+    case Command::kHome:
+      return true;
+    case Command::kIdle:
+      return homing_ != Homing::kNo;
+    default:
+      return false;
+  }
+}
+
+void Conduct::command(Instant time, const CommandFrame& frame, const Complain& complain) {
+  if (latched_) judge_order(time, frame, complain);
+  judge_permission(frame, complain);
+  judge_estop(time, frame, complain);
+  judge_homing(time, frame, complain);
+  judge_motion(time, frame, complain);
+  latched_ = frame;
+  latched_at_ = time;
+}
+
+/// Lets the frame before act, if it had the time, and judges what came between.
+void Conduct::judge_order(Instant time, const CommandFrame& frame, const Complain& complain) {
+  if (time > latched_at_) {
+    act(latched_at_, *latched_);
+    judge_silence(time, complain);
+    gap_before_ = time - latched_at_;
+    together_ = 1;
+    return;
+  }
+  ++together_;
+  const bool is_lost = latched_->command != frame.command && latched_->command != Command::kIdle;
+  const bool may_be_late = noise_ > Duration::zero() && gap_before_ > together_ * kShortPeriod;
+  if (!is_lost || may_be_late) return;
+  complain("parol6.host.overwritten", fmt::format("code {} was followed at once by code {}",
+                                                  code(latched_->command), code(frame.command)));
+}
+
+void Conduct::act(Instant time, const CommandFrame& frame) {
+  if (frame.command == Command::kEnable) is_enabled_ = true;
+  if (frame.command == Command::kDisable) is_enabled_ = false;
+  if (frame.command == Command::kHome && is_enabled_ && homing_ == Homing::kNo) {
+    homing_ = Homing::kAsked;
+  }
+  if (ends_homing(frame.command)) homing_ = Homing::kNo;
+  const bool can_be_held = frame.command == Command::kJog || frame.command == Command::kGoTo;
+  if (!can_be_held || !telemetry_) {
+    held_.reset();
+  } else if (!held_ || !is_same_motion(held_->frame, frame)) {
+    held_ = Held{.frame = frame, .since = time, .position = telemetry_->position};
+  }
+}
+
+void Conduct::judge_silence(Instant time, const Complain& complain) const {
+  const auto gap = time - latched_at_;
+  if (gap <= kLongestGap || !has_joints_move()) return;
+  complain("parol6.host.gap-in-motion",
+           fmt::format("{:.0f} ms passed without a frame after code {}", milliseconds(gap),
+                       code(latched_->command)));
+}
+
+void Conduct::finish(Instant time, const Complain& complain) {
+  if (!latched_) return;
+  if (time > latched_at_) act(latched_at_, *latched_);
+  if (time - latched_at_ <= kLongestGap || !has_joints_move()) return;
+  complain("parol6.host.silent-in-motion",
+           fmt::format("the last frame had code {}", code(latched_->command)));
+}
+
+void Conduct::judge_permission(const CommandFrame& frame, const Complain& complain) const {
+  if (!moves(frame.command)) return;
+  if (!telemetry_) {
+    complain("parol6.host.looks-first", fmt::format("code {} came first", code(frame.command)));
+  } else if (is_estop_pressed()) {
+    return;  // parol6.host.estop-stays
+  } else if (!is_enabled_) {
+    complain("parol6.host.move-disabled",
+             fmt::format("code {} came to a disabled board", code(frame.command)));
+  } else if (frame.command == Command::kGoTo && homing_ == Homing::kNo && !is_arm_homed()) {
+    complain("parol6.host.go-to-unhomed",
+             fmt::format("a go-to came while homed was 0x{:02X}", telemetry_->homed));
+  }
+}
+
+void Conduct::judge_estop(Instant time, const CommandFrame& frame, const Complain& complain) {
+  if (!is_estop_pressed()) return;
+  if (frame.command == Command::kDisable) {
+    has_disabled_ = true;
+    return;
+  }
+  if (has_disabled_ && (moves(frame.command) || frame.command == Command::kEnable)) {
+    complain("parol6.host.estop-stays", fmt::format("code {} came while the emergency stop was "
+                                                    "pressed",
+                                                    code(frame.command)));
+  } else if (!has_disabled_ && !has_ignored_stop_ && time - *pressed_since_ > kReaction) {
+    has_ignored_stop_ = true;
+    complain("parol6.host.estop-disables",
+             fmt::format("no disable came in {:.0f} ms, but code {}",
+                         milliseconds(time - *pressed_since_), code(frame.command)));
+  }
+}
+
+void Conduct::judge_homing(Instant time, const CommandFrame& frame, const Complain& complain) {
+  if (frame.command != Command::kHome) {
+    home_since_.reset();
+  } else if (!home_since_) {
+    home_since_ = time;
+  } else if (time - *home_since_ > kLongestHome) {
+    complain("parol6.host.home-held", "home was held for more than a second");
+  }
+  const bool may_come = frame.command == Command::kIdle || frame.command == Command::kHome ||
+                        frame.command == Command::kDisable;
+  const bool disturbs = ends_homing(frame.command) && !may_come;
+  if (homing_ != Homing::kNo && disturbs) {
+    complain("parol6.host.home-disturbed",
+             fmt::format("code {} came while homed was 0x{:02X}", code(frame.command),
+                         telemetry_ ? telemetry_->homed : 0));
+  }
+}
+
+void Conduct::judge_motion(Instant time, const CommandFrame& frame, const Complain& complain) {
+  if (frame.command == Command::kIdle && has_speed(frame)) {
+    complain("parol6.host.idle-speed", "an idle frame came with a speed");
+  }
+  if (frame.command != Command::kJog) outward_since_.reset();
+  if (!telemetry_ || !is_enabled_ || is_estop_pressed()) return;
+  if (frame.command == Command::kJog) judge_jog(time, frame, complain);
+  if (frame.command == Command::kGoTo) judge_go_to(frame, complain);
+  judge_held(time, frame, complain);
+}
+
+void Conduct::judge_jog(Instant time, const CommandFrame& frame, const Complain& complain) {
+  bool leads_out = false;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto speed = frame.speed[j];
+    if (std::abs(speed.value) > kFastest[j].value) {
+      complain("parol6.host.jog-pace",
+               fmt::format("j{} was jogged at {} steps/s", j + 1, speed.value));
+    }
+    if (is_arm_homed() && kJointBounds[j].forbid(telemetry_->position[j], speed)) {
+      leads_out = true;
+      if (outward_since_ && time - *outward_since_ > kReaction) {
+        complain("parol6.host.jog-bound",
+                 fmt::format("j{} was jogged at {} steps/s, and stood at "
+                             "{}",
+                             j + 1, speed.value, telemetry_->position[j].value));
+      }
+    }
+  }
+  if (!leads_out) {
+    outward_since_.reset();
+  } else if (!outward_since_) {
+    outward_since_ = time;
+  }
+}
+
+void Conduct::judge_go_to(const CommandFrame& frame, const Complain& complain) const {
+  if (!is_arm_homed()) return;
+  constexpr Steps kRounding{1};  // the two hosts round their limits differently
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto goal = frame.position[j];
+    const auto& bounds = kJointBounds[j];
+    if (goal < bounds.lower - kRounding || goal > bounds.upper + kRounding) {
+      complain("parol6.host.go-to-range",
+               fmt::format("j{} was sent to {}, from {} to {} is its range", j + 1, goal.value,
+                           bounds.lower.value, bounds.upper.value));
+      continue;
+    }
+    const auto speed = go_to_speed(telemetry_->position[j], goal, frame.speed[j]);
+    if (std::abs(speed) > kFastest[j].value) {
+      complain("parol6.host.go-to-pace",
+               fmt::format("j{} was sent {} steps away, which is {:.0f} steps/s", j + 1,
+                           goal.value - telemetry_->position[j].value, speed));
+    }
+  }
+}
+
+void Conduct::judge_held(Instant time, const CommandFrame& frame, const Complain& complain) {
+  if (!held_ || held_->is_judged || !is_same_motion(held_->frame, frame)) return;
+  const auto held_for = time - held_->since;
+  held_->has_moved = held_->has_moved || telemetry_->position != held_->position;
+  const bool is_go_to = frame.command == Command::kGoTo;
+  if (is_go_to && has_speed(frame) && held_->has_moved && held_for > kRest) {
+    held_->is_judged = true;
+    complain("parol6.host.go-to-rest",
+             fmt::format("a go-to was held for {:.0f} ms with a speed", milliseconds(held_for)));
+  } else if (held_for > kEffect && !held_->has_moved) {
+    const bool wants_motion = is_go_to ? frame.position != telemetry_->position
+                                       : std::ranges::any_of(frame.speed, [](StepsPerSecond speed) {
+                                           return std::abs(speed.value) >= kNoticeable;
+                                         });
+    if (!wants_motion) return;
+    held_->is_judged = true;
+    complain("parol6.host.no-effect",
+             fmt::format("code {} was held for {:.0f} ms and nothing moved", code(frame.command),
+                         milliseconds(held_for)));
+  }
+}
+
+void Conduct::telemetry(Instant time, const TelemetryFrame& frame) {
+  telemetry_ = frame;
+  if (!parol6::is_estop_pressed(frame)) {
+    pressed_since_.reset();
+    has_disabled_ = false;
+    has_ignored_stop_ = false;
+  } else if (!pressed_since_) {
+    pressed_since_ = time;
+  }
+  if (homing_ == Homing::kAsked && !is_homed(frame)) homing_ = Homing::kRuns;
+  if (homing_ == Homing::kRuns && is_homed(frame)) homing_ = Homing::kNo;
+}
+
+}  // namespace armjig::parol6

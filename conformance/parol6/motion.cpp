@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/parol6/motion.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace armjig::parol6 {
+namespace {
+
+constexpr double kLongestLoop = 100e-6;  // seconds; recordings have 20 to 100 us
+constexpr double kClockError = 0.02;     // RC oscillator: 1 %, and a margin
+
+double seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
+
+}  // namespace
+
+std::string speed_field(std::size_t joint) { return fmt::format("speed.j{}", joint + 1); }
+std::string position_field(std::size_t joint) { return fmt::format("position.j{}", joint + 1); }
+
+std::int32_t steps(const Stretch& stretch, std::size_t joint) noexcept {
+  return stretch.after.position[joint].value - stretch.before.position[joint].value;
+}
+
+Stretch run(BoardBench& board, const CommandFrame& frame, Duration time) {
+  board.act(frame);
+  auto before = board.ask(frame);
+  return {before, board.keep_asking(frame, time)};
+}
+
+void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, int speed) {
+  if (board.is_over()) return;
+  const auto shortest = seconds(stretch.after.asked - stretch.before.received);
+  const auto longest = seconds(stretch.after.received - stretch.before.asked);
+  const auto interval = std::floor(1e6 / std::abs(speed)) * 1e-6;
+  const auto least = shortest * (1 - kClockError) / (interval + kLongestLoop) - 1.0;
+  const auto most = longest * (1 + kClockError) / interval + 1.0;
+  const auto made = steps(stretch, joint) * (speed < 0 ? -1 : 1);
+  board.expect_true(
+      made >= least && made <= most,
+      fmt::format("j{} to make {:.0f} to {:.0f} steps {} at {} steps/s in {:.1f} ms", joint + 1,
+                  std::ceil(least), most, speed < 0 ? "down" : "up", speed, longest * 1e3),
+      fmt::format("{} steps", steps(stretch, joint)));
+}
+
+void expect_still(BoardBench& board, const Stretch& stretch) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    board.expect_same(stretch.after, position_field(j), stretch.before);
+  }
+}
+
+void expect_still(BoardBench& board, const CommandFrame& frame, Duration time) {
+  expect_still(board, run(board, frame, time));
+}
+
+void expect_moved(BoardBench& board, const Stretch& stretch) {
+  bool has_moved = false;
+  for (std::size_t j = 0; j < kJointCount; ++j) has_moved |= steps(stretch, j) != 0;
+  board.expect_true(has_moved, "motion", "all joints stand still");
+}
+
+void expect_reported(BoardBench& board, const TelemetryFrame& answer, const Speeds& speeds) {
+  for (std::size_t j = 0; j < kJointCount; ++j) board.expect(answer, speed_field(j), speeds[j]);
+}
+
+void begin_homing(BoardBench& board, Duration time) {
+  board.act(with_code(100));
+  board.keep_asking(idle(), time);
+}
+
+std::array<Steps, kJointCount> beside(const TelemetryFrame& answer, std::size_t joint, int steps) {
+  auto positions = answer.position;
+  positions[joint].value += steps;
+  return positions;
+}
+
+}  // namespace armjig::parol6

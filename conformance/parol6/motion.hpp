@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "conformance/parol6/board_bench.hpp"
+#include "harness/core/time.hpp"
+
+/// What cases say about joints that move or stand.
+namespace armjig::parol6 {
+
+/// The first and the last answer of a stretch of time in which a command acted.
+struct Stretch {
+  Answer before;
+  Answer after;
+};
+
+/// Steps from the first to the last answer.
+[[nodiscard]] std::int32_t steps(const Stretch& stretch, std::size_t joint) noexcept;
+
+/// Lets a command act for a time, repeated every 10 ms; both answers are from while it acts.
+Stretch run(BoardBench& board, const CommandFrame& frame, Duration time);
+
+/// Expects the joint to have made the steps of that speed, as far as times and the length of the
+/// board's loop (at most 100 us) leave it open.
+void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, int speed);
+
+/// Expects that no joint moves while a frame is repeated for a time.
+void expect_still(BoardBench& board, const CommandFrame& frame, Duration time);
+/// The same for a stretch that is over.
+void expect_still(BoardBench& board, const Stretch& stretch);
+/// Expects that at least one joint has moved.
+void expect_moved(BoardBench& board, const Stretch& stretch);
+
+/// Expects the speeds that telemetry reports.
+void expect_reported(BoardBench& board, const TelemetryFrame& answer, const Speeds& speeds);
+
+/// `speed.j1` and the like.
+[[nodiscard]] std::string speed_field(std::size_t joint);
+[[nodiscard]] std::string position_field(std::size_t joint);
+
+/// Starts homing and lets it go on for a time. No joint is near its switch by then if the arm stood
+/// near its standby position.
+void begin_homing(BoardBench& board, Duration time);
+
+/// All joints where they are in `answer`, but one further by `steps`.
+[[nodiscard]] std::array<Steps, kJointCount> beside(const TelemetryFrame& answer, std::size_t joint,
+                                                    int steps);
+
+}  // namespace armjig::parol6

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/run.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "harness/core/version.hpp"
+
+namespace armjig {
+namespace {
+
+/// FNV-1a, so that the random bytes of a case do not depend on which cases ran before.
+std::uint64_t seed_of(std::string_view name, std::uint64_t seed) noexcept {
+  auto hash = 0xCBF29CE484222325ULL ^ seed;
+  for (const auto letter : name) {
+    hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001B3ULL;
+  }
+  return hash;
+}
+
+std::string wording_of(const Judgement& judgement) {
+  if (judgement.expected.empty()) return judgement.actual;
+  return fmt::format("expected {}, got {}", judgement.expected, judgement.actual);
+}
+
+/// What one or several runs of a case came to.
+struct Finding {
+  Judgement judgement;
+  std::string evidence;
+  Duration duration{};
+};
+
+/// One run over a suite.
+class Run {
+ public:
+  Run(const Suite& suite, Bench& bench, const RunOptions& options,
+      const std::function<void(const ReportRow&)>& on_row)
+      : suite_{suite}, bench_{bench}, options_{options}, on_row_{on_row} {}
+
+  Report all() {
+    const auto cases = select(suite_, options_.profile, options_.selection);
+    is_alive_ = check_alive("before the first case");
+    if (is_alive_) bench_.measure_noise();
+    add_facts(cases.size());
+    for (const auto* one : cases) add(judge(*one));
+    if (is_alive_) (void)check_alive("after the last case");
+    for (const auto& waiver : options_.waivers) check_use(waiver);
+    return std::move(report_);
+  }
+
+ private:
+  void add_facts(std::size_t selected) {
+    report_.title = fmt::format("Conformance of {}", suite_.device);
+    report_.facts = {
+        {"target", options_.target},
+        {"profile", std::string{to_string(options_.profile)}},
+        {"catalogue", std::string{suite_.version}},
+        {"armjig", std::string{kVersion}},
+        {"seed", std::to_string(options_.seed)},
+        {"selected", fmt::format("{} cases", selected)},
+        {"answers in", fmt::format("{} us at most", bench_.noise() / std::chrono::microseconds{1})},
+    };
+  }
+
+  ReportRow judge(const Case& one) {
+    if (const auto reason = reason_not_to_run(one)) {
+      return row_of(one, {{Verdict::kSkipped, {}, *reason}});
+    }
+    auto finding = run_repeatedly(one);
+    auto& judgement = finding.judgement;
+    if (bench_.error()) {
+      judgement = {Verdict::kError, {}, std::string{describe(bench_.error()->code)}};
+      is_alive_ = false;
+    } else if (judgement.is_silence && !check_alive(fmt::format("after {}", name_of(one)))) {
+      judgement.verdict = Verdict::kError;
+      is_alive_ = false;
+    } else if (judgement.verdict == Verdict::kFail && deviates_as_known(one)) {
+      judgement.verdict = Verdict::kDeviation;
+    }
+    excuse(one, judgement);
+    if (judgement.verdict == Verdict::kFail || judgement.verdict == Verdict::kFlaky) {
+      has_failed_ = true;
+    }
+    return row_of(one, std::move(finding));
+  }
+
+  [[nodiscard]] std::optional<std::string> reason_not_to_run(const Case& one) const {
+    for (const auto hazard : {one.hazard, suite_.starts[one.start].hazard}) {
+      if (!options_.permissions.allow(hazard)) {
+        return fmt::format("needs --allow {}", to_string(hazard));
+      }
+    }
+    if (!is_alive_) return "the target does not answer";
+    if (has_failed_ && options_.stops_at_first_failure) return "a case failed before";
+    return std::nullopt;
+  }
+
+  Finding run_repeatedly(const Case& one) {
+    auto finding = run_once(one, options_.profile);
+    std::map<Verdict, int> verdicts{{finding.judgement.verdict, 1}};
+    for (int i = 1; i < options_.repeat && !bench_.error(); ++i) {
+      auto again = run_once(one, options_.profile);
+      ++verdicts[again.judgement.verdict];
+      again.duration += finding.duration;
+      const bool shows_more = again.judgement.verdict != Verdict::kPass;
+      if (shows_more) finding = std::move(again);
+    }
+    if (verdicts.size() > 1 && verdicts.contains(Verdict::kFail)) {
+      finding.judgement.verdict = Verdict::kFlaky;
+      finding.judgement.actual +=
+          fmt::format(" (in {} of {} runs)", verdicts[Verdict::kFail], options_.repeat);
+    }
+    return finding;
+  }
+
+  Finding run_once(const Case& one, Profile profile) {
+    Finding finding;
+    if (auto obstacle = bring_to_start(one, profile)) {
+      finding.judgement = *std::move(obstacle);
+    } else {
+      bench_.begin(profile, seed_of(name_of(one), options_.seed));
+      const auto begin = bench_.now();
+      one.run(bench_);
+      finding.duration = bench_.now() - begin;
+      finding.judgement = bench_.judgement();
+    }
+    if (finding.judgement.verdict != Verdict::kPass) finding.evidence = bench_.last_exchange();
+    return finding;
+  }
+
+  /// Why the case cannot begin. A state that was out of reach once is not tried again.
+  std::optional<Judgement> bring_to_start(const Case& one, Profile profile) {
+    if (const auto known = out_of_reach_.find(one.start); known != out_of_reach_.end()) {
+      return known->second;
+    }
+    bench_.begin(profile, options_.seed);
+    bench_.bring_to(one.start);
+    if (bench_.judgement().verdict == Verdict::kPass) return std::nullopt;
+    auto obstacle = bench_.judgement();
+    if (obstacle.verdict != Verdict::kSkipped) {
+      obstacle = {Verdict::kInconclusive,
+                  {},
+                  fmt::format("cannot reach its start, {}: {}", suite_.starts[one.start].name,
+                              wording_of(obstacle)),
+                  obstacle.is_silence};
+    }
+    out_of_reach_.emplace(one.start, obstacle);
+    return obstacle;
+  }
+
+  /// Whether the device does what the shipped one is known to do instead.
+  bool deviates_as_known(const Case& broken) {
+    const auto& instead = requirement_of(suite_, broken).instead;
+    if (options_.profile != Profile::kDocumented || instead.empty()) return false;
+    int passed = 0;
+    for (const auto& chapter : suite_.chapters) {
+      for (const auto& one : chapter.cases) {
+        if (one.requirement != instead || reason_not_to_run(one)) continue;
+        if (run_once(one, Profile::kFirmware).judgement.verdict != Verdict::kPass) return false;
+        ++passed;
+      }
+    }
+    return passed > 0;
+  }
+
+  void excuse(const Case& one, Judgement& judgement) {
+    if (judgement.verdict != Verdict::kFail && judgement.verdict != Verdict::kFlaky) return;
+    const auto waiver = std::ranges::find(options_.waivers, one.requirement, &Waiver::requirement);
+    if (waiver == options_.waivers.end()) return;
+    judgement.verdict = Verdict::kDeviation;
+    judgement.actual +=
+        fmt::format(" (waived until {}: {})", armjig::to_string(waiver->expires), waiver->reason);
+  }
+
+  /// A waiver whose requirement is obeyed would hide the next failure.
+  void check_use(const Waiver& waiver) {
+    if (!options_.selection.is_everything()) return;
+    const auto is_about = [&](const ReportRow& row) {
+      return row.requirement == waiver.requirement;
+    };
+    const auto is_obeyed = std::ranges::any_of(report_.rows, is_about) &&
+                           std::ranges::all_of(report_.rows, [&](const ReportRow& row) {
+                             return !is_about(row) || row.verdict == Verdict::kPass;
+                           });
+    if (!is_obeyed) return;
+    ReportRow row;
+    row.verdict = Verdict::kError;
+    row.name = fmt::format("{}.waived", waiver.requirement);
+    row.summary = "a waiver excuses what needs no excuse; take it out of the file";
+    row.expected = fmt::format("a failure of {}", waiver.requirement);
+    row.actual = "all its cases passed";
+    add(std::move(row));
+  }
+
+  bool check_alive(std::string_view when) {
+    bench_.begin(options_.profile, options_.seed);
+    if (bench_.is_alive()) return true;
+    ReportRow row;
+    row.verdict = Verdict::kError;
+    row.name = fmt::format("{}.alive", suite_.device);
+    row.summary = fmt::format("no sign of life {}", when);
+    row.expected = "an answer to a good message";
+    row.actual = bench_.error() ? std::string{describe(bench_.error()->code)} : "silence";
+    row.evidence = bench_.last_exchange();
+    row.repeat = options_.command;
+    add(std::move(row));
+    return false;
+  }
+
+  [[nodiscard]] ReportRow row_of(const Case& one, Finding finding) const {
+    const auto& requirement = requirement_of(suite_, one);
+    ReportRow row;
+    row.verdict = finding.judgement.verdict;
+    row.name = name_of(one);
+    row.summary = one.rule;
+    row.requirement = requirement.id;
+    row.level = requirement.level;
+    row.demand = requirement.text;
+    row.source = requirement.source;
+    row.expected = std::move(finding.judgement.expected);
+    row.actual = std::move(finding.judgement.actual);
+    row.evidence = std::move(finding.evidence);
+    row.repeat = fmt::format("{} --filter {}", options_.command, row.name);
+    row.duration = finding.duration;
+    return row;
+  }
+
+  void add(ReportRow row) {
+    on_row_(row);
+    report_.rows.push_back(std::move(row));
+  }
+
+  const Suite& suite_;
+  Bench& bench_;
+  const RunOptions& options_;
+  const std::function<void(const ReportRow&)>& on_row_;
+  Report report_;
+  std::map<std::uint8_t, Judgement> out_of_reach_;  ///< start states, and why
+  bool is_alive_ = false;
+  bool has_failed_ = false;
+};
+
+}  // namespace
+
+Report run_suite(const Suite& suite, Bench& bench, const RunOptions& options,
+                 const std::function<void(const ReportRow&)>& on_row) {
+  return Run{suite, bench, options, on_row}.all();
+}
+
+}  // namespace armjig

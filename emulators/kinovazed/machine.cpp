@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/kinovazed/machine.hpp"
+
+#include <algorithm>
+
+namespace armjig::kinovazed {
+namespace {
+
+using Cell = std::optional<State>;
+using enum State;
+
+// As short as the table that they fill needs them.
+// NOLINTBEGIN(readability-identifier-naming)
+constexpr Cell r{};  // Rejected
+constexpr Cell off{kPoweredOff};
+constexpr Cell ini{kInitializing};
+constexpr Cell stop{kEmergencyStopped};
+constexpr Cell idle{kIdle};
+constexpr Cell fold{kRetracting};
+constexpr Cell unf{kUnfolding};
+constexpr Cell mode{kSettingMode};
+constexpr Cell move{kSteering};
+constexpr Cell run{kRunningSequence};
+constexpr Cell frz{kFrozen};
+// NOLINTEND(readability-identifier-naming)
+
+/// kinovazed.state.table. Columns are the verbs, in their order: EStop, QuitEStop, Initialize,
+/// Unfold, Retract, Freeze, Unfreeze, SetJoystickMode, MoveJoystick, RunObjective.
+constexpr std::array<std::array<Cell, kMachineVerbs>, kStateNames.size()> kCommands{{
+    {stop, off, r, r, r, r, r, r, r, r},            // emergencyStopped
+    {stop, off, ini, r, r, r, r, r, r, r},          // poweredOff
+    {stop, r, r, r, r, r, r, r, r, r},              // initializing
+    {stop, r, ini, r, fold, frz, r, mode, r, run},  // idle
+    {stop, r, r, r, r, r, r, r, r, r},              // retracting
+    {stop, r, r, unf, r, r, r, r, r, r},            // retracted
+    {stop, r, r, r, r, r, r, r, r, r},              // unfolding
+    {stop, r, r, r, fold, r, r, r, r, r},           // settingMode: kinovazed.interrupt.retract
+    {stop, r, r, r, r, frz, r, mode, move, run},    // steering
+    {stop, r, r, r, r, r, r, mode, r, run},  // runningSequence: kinovazed.interrupt.objective
+    {stop, r, r, r, r, r, idle, r, r, r},    // frozen
+}};
+
+struct ArmRow {
+  ArmEvent event;
+  State state;
+  ArmReaction reaction;
+};
+
+/// kinovazed.event.table.
+constexpr std::array kArmRows{
+    ArmRow{ArmEvent::kInitialized, kInitializing, {kIdle, Event::kInitialized}},
+    ArmRow{ArmEvent::kHomeReached, kUnfolding, {kIdle, Event::kUnfolded}},
+    ArmRow{ArmEvent::kRetractionReached, kRetracting, {kRetracted, Event::kRetracted}},
+    ArmRow{ArmEvent::kModeChanged, kSettingMode, {kSteering, Event::kJoystickModeSet}},
+    ArmRow{ArmEvent::kNoModeChanged, kSettingMode, {kIdle, Event::kJoystickModeSet}},
+    ArmRow{ArmEvent::kPointReached, kRunningSequence, {kRunningSequence, {}}},
+    ArmRow{ArmEvent::kLastPointReached, kRunningSequence, {kIdle, Event::kObjectiveDone}},
+};
+
+}  // namespace
+
+std::optional<State> next_state(State state, Verb verb) noexcept {
+  return kCommands[static_cast<std::size_t>(state)][static_cast<std::size_t>(verb)];
+}
+
+std::optional<ArmReaction> reaction(State state, ArmEvent event) noexcept {
+  const auto row = std::ranges::find_if(kArmRows, [&](const ArmRow& candidate) {
+    return candidate.event == event && candidate.state == state;
+  });
+  return row == kArmRows.end() ? std::nullopt : std::optional{row->reaction};
+}
+
+std::uint8_t state_flag(State state) noexcept {
+  switch (state) {
+    case kEmergencyStopped:
+      return beat::kEmergencyStop;
+    case kFrozen:
+      return beat::kFreezed;
+    case kIdle:
+      return beat::kIdle;
+    case kRunningSequence:
+      return beat::kRunningObjective;
+    case kSteering:
+      return beat::kInJoystickMode;
+    case kRetracted:
+      return beat::kRetracted;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace armjig::kinovazed

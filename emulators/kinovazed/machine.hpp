@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "harness/wire/kinovazed/line.hpp"
+
+/// What the server may do when: its states, and what commands and the arm make of them. Tables
+/// only; time and arm are elsewhere.
+namespace armjig::kinovazed {
+
+enum class State : std::uint8_t {
+  kEmergencyStopped,
+  kPoweredOff,
+  kInitializing,
+  kIdle,
+  kRetracting,
+  kRetracted,
+  kUnfolding,
+  kSettingMode,
+  kSteering,
+  kRunningSequence,
+  kFrozen,
+};
+inline constexpr std::array<std::string_view, 11> kStateNames{
+    "emergencyStopped", "poweredOff",      "initializing", "idle",
+    "retracting",       "retracted",       "unfolding",    "settingMode",
+    "steering",         "runningSequence", "frozen"};
+
+[[nodiscard]] constexpr std::string_view to_string(State state) noexcept {
+  return kStateNames[static_cast<std::size_t>(state)];
+}
+
+/// Verbs that the state machine knows; those behind `kRunObjective` pass it by.
+inline constexpr std::size_t kMachineVerbs = 10;
+
+/// The state that a command leads to, or none: `Rejected`.
+[[nodiscard]] std::optional<State> next_state(State state, Verb verb) noexcept;
+
+/// What the supervision of the arm tells.
+enum class ArmEvent : std::uint8_t {
+  kInitialized,
+  kHomeReached,
+  kRetractionReached,
+  kModeChanged,
+  kNoModeChanged,
+  kPointReached,
+  kLastPointReached,
+  kReconnected,
+};
+
+struct ArmReaction {
+  State next{};
+  std::optional<Event> said;
+};
+
+/// What an event of the arm does in a state, or none: nothing, not even a word. `kReconnected` is
+/// not asked here: it stops the arm in any state.
+[[nodiscard]] std::optional<ArmReaction> reaction(State state, ArmEvent event) noexcept;
+
+/// The flag of a state; 0 for those that no bit shows.
+[[nodiscard]] std::uint8_t state_flag(State state) noexcept;
+
+}  // namespace armjig::kinovazed

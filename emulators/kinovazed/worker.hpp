@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "emulators/kinovazed/arm_port.hpp"
+#include "emulators/kinovazed/behaviour.hpp"
+#include "emulators/kinovazed/machine.hpp"
+#include "harness/core/time.hpp"
+
+namespace armjig::kinovazed {
+
+/// What the network side may ask of the arm side; one job after the other.
+struct Job {
+  enum class Kind : std::uint8_t {
+    kPoll,
+    kWait,  ///< for its turn only
+    kStop,
+    kStopAndRelease,  ///< and gives back control
+    kTakeControl,
+    kInitialize,
+    kUnfold,
+    kRetract,
+    kSetMode,
+    kMove,
+    kGoTo,
+    kEvent,
+  };
+  Kind kind{};
+  bool is_awaited = false;  ///< the network side stands still until it is done
+  Instant posted{};
+  Mode mode{};            ///< of `kSetMode`
+  Deflection deflection;  ///< of `kMove`
+  Pose target;            ///< of `kGoTo`
+  ArmEvent event{};       ///< of `kEvent`
+};
+
+/// The server's supervision of the arm: one thread that looks at the arm every 10 ms and does one
+/// job at a time (docs/spec/kinovazed.md, "Supervision of the arm"). A regular value on the virtual
+/// clock.
+class Worker {
+ public:
+  struct Report {
+    enum class Kind : std::uint8_t {
+      kNothing,
+      kDone,       ///< an awaited job is done
+      kEvent,      ///< decide what `event` does; what it needs of the arm is asked for by `then_*`
+      kEventOver,  ///< what an event needed of the arm is done
+      kAbort,      ///< an error that ends the process
+    };
+    Kind kind{};
+    ArmEvent event{};
+  };
+
+  Worker(ArmPort arm, const Behaviour& behaviour, Duration call_time)
+      : arm_{std::move(arm)}, behaviour_{behaviour}, call_time_{call_time} {}
+
+  /// Begins to look for the arm, as at the start of the process.
+  void start(Instant now);
+  /// The arm was found and looked at once.
+  [[nodiscard]] bool is_started() const noexcept { return is_started_; }
+
+  void post(Job job, Instant now);
+
+  /// Goes on until there is something to report, or up to and including `limit`.
+  [[nodiscard]] Report run_until(Instant limit);
+  [[nodiscard]] Instant now() const noexcept { return now_; }
+  /// When something happens if nothing more is posted; none: never.
+  [[nodiscard]] std::optional<Instant> next_event() const noexcept;
+
+  // Between the reports `kEvent` and `kEventOver`, in this order.
+  void then_stop();
+  void then_go_to(const Pose& target);
+  void then_release_control();
+
+  /// The thread ends without a word: from now on no job is ever done (kinovazed.death.hang).
+  void die() noexcept;
+  [[nodiscard]] bool is_dead() const noexcept { return is_dead_; }
+
+  /// The arm is not flagged as failed.
+  [[nodiscard]] bool is_arm_well() const noexcept { return !has_failed_; }
+  /// As last polled and inside the workspace.
+  [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
+
+  [[nodiscard]] ArmPort& arm() noexcept { return arm_; }
+  [[nodiscard]] const ArmPort& arm() const noexcept { return arm_; }
+
+ private:
+  struct Step {
+    enum class Kind : std::uint8_t {
+      kFindArm,
+      kReadPose,
+      kReadMode,
+      kReadCurrents,
+      kReadVelocities,
+      kRepair,
+      kOpen,
+      kRepaired,
+      kTakeControl,
+      kReleaseControl,
+      kErase,
+      kZeroAxes,
+      kRelease,
+      kPress,
+      kFreshModeToInitialize,
+      kFreshModeToRetract,
+      kSelect,
+      kModeRelease,
+      kModeIsSet,
+      kWriteAxes,
+      kWriteTarget,
+      kPause,
+      kPostEvent,
+      kStarted,
+    };
+    Kind kind{};
+    std::uint16_t value{};  ///< milliseconds, an `ArmEvent`, or how often
+  };
+  /// What the server believes the arm to be doing.
+  enum class Movement : std::uint8_t {
+    kNone,
+    kHoming,
+    kInitializing,
+    kRetracting,
+    kHomingToRetract,
+    kToTarget,
+  };
+
+  void begin(const Job& job);
+  [[nodiscard]] Report finish_job();
+  void carry_out(Step step);
+  [[nodiscard]] Duration duration(Step step) const noexcept;
+  [[nodiscard]] std::optional<ArmCall> call_of(Step step) const noexcept;
+  void on_failed_call(Step step);
+  void on_call(Step step);
+  void on_local(Step step);
+
+  // Steps in reverse: what is pushed last comes first.
+  void push(Step::Kind kind, std::uint16_t value = 0) { steps_.push_back({kind, value}); }
+  void push_pause(std::uint16_t milliseconds) { push(Step::Kind::kPause, milliseconds); }
+  void push_event(ArmEvent event) {
+    push(Step::Kind::kPostEvent, static_cast<std::uint16_t>(event));
+  }
+  void push_stop();
+  void push_poll();
+  void push_homing(ArmMode mode, ArmEvent when_there);
+  void push_retracting(ArmMode mode);
+
+  void take_pose(const Pose& pose);
+  void take_mode(ArmMode mode);
+  void check_settling();
+  void check_current(float sum);
+  void repair();
+  void forget_arm();
+  void give_up();
+  [[nodiscard]] Stick stick_of(const Deflection& deflection) const noexcept;
+  [[nodiscard]] Deflection bounded(Deflection deflection) const noexcept;
+
+  ArmPort arm_;
+  Behaviour behaviour_;
+  Duration call_time_;
+  Instant now_{};
+  bool is_started_ = false;
+  bool is_dead_ = false;
+  bool aborts_ = false;
+
+  std::deque<Job> jobs_;
+  std::optional<Job> job_;
+  std::vector<Step> steps_;
+  std::vector<Step> asked_;  ///< by `then_*`, in order
+  std::optional<Step> step_;
+  Instant step_ends_{};
+  Instant poll_due_{};
+  int attempts_ = 0;
+
+  bool has_failed_ = false;
+  bool has_control_ = false;
+  bool has_pose_ = false;
+  Pose pose_;
+  std::optional<ArmMode> mode_;
+  Movement movement_{};
+  Pose target_;
+  Mode joystick_mode_{};
+  std::optional<Instant> mode_set_;  ///< kinovazed.mode.guard
+  bool is_settling_ = false;
+};
+
+}  // namespace armjig::kinovazed

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emulators/replay/replay.hpp"
+#include "harness/capture/trace.hpp"
+#include "harness/core/error.hpp"
+
+namespace armjig::kinovazed {
+
+/// Drives a fresh server, with the arm that the header describes behind it, by what clients and arm
+/// did in a recording, as captures/kinovazed/README.md says: each line when all that was recorded
+/// before it has come, not before its time, and not sooner after the line before it.
+///
+/// The events of both lists are `from_device`, `disconnect` and `connect` of a connection (`id`),
+/// and `end`, what is left of the server (`name`). `value` is the time in microseconds since the
+/// last thing that a client or the arm did.
+[[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
+
+}  // namespace armjig::kinovazed

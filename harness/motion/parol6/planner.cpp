@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/motion/parol6/planner.hpp"
+
+#include "harness/arm/models.hpp"
+#include "harness/motion/parol6/checks.hpp"
+#include "harness/motion/parol6/commander_ik.hpp"
+#include "harness/motion/parol6/conversion.hpp"
+#include "harness/motion/parol6/joint_move.hpp"
+#include "harness/motion/parol6/line.hpp"
+
+namespace armjig::parol6 {
+namespace {
+
+using Planned = tl::expected<Plan, Refusal>;
+
+/// What the commander adds to every target, so that none is exactly where the joint is: degrees in
+/// MoveJoint, radians in MovePose.
+constexpr double kNudge = 1e-7;
+
+/// Of six numbers as people write them: mm and degrees.
+arm::Pose pose_of(const std::array<double, 6>& numbers, arm::Convention convention) noexcept {
+  const auto [x, y, z, rx, ry, rz] = numbers;
+  return {rotation_of({to_radians(rx), to_radians(ry), to_radians(rz)}, convention),
+          {x / 1000, y / 1000, z / 1000}};
+}
+
+Planned plan_joints(const Move& move, const JointSteps& start, const PlannerSettings& settings) {
+  if (settings.rules == Rules::kDocumented) {
+    arm::SixJoints target{};
+    for (std::size_t j = 0; j < kJointCount; ++j) target[j] = to_radians(move.target[j]);
+    return plan_documented_joints(target, start, move.timing, move.tracking, settings.limits);
+  }
+  CommanderTarget target{.default_speed = 45, .default_acceleration = 27};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    target.radians[j] = to_radians(move.target[j] + kNudge);
+    target.steps[j] = Steps{cut_off(steps_of_degrees(j, move.target[j]))};
+  }
+  return plan_commander_joints(target, start, move.timing, move.tracking, settings.limits);
+}
+
+/// The commander begins its search at the same posture wherever the arm is, and takes what it finds
+/// for found.
+Planned plan_commander_pose(const Move& move, const JointSteps& start,
+                            const PlannerSettings& settings) {
+  arm::SixJoints seed{};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    seed[j] = to_radians(kJointRanges[j].commander_seed.value);
+  }
+  const auto pose = pose_of(move.target, settings.convention);
+  const auto answer = commander_ik(arm::parol6_commander(), pose, seed);
+  CommanderTarget target{.default_speed = 50, .default_acceleration = 30};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    target.radians[j] = answer.joints[j] + kNudge;
+    target.steps[j] = Steps{cut_off(steps_of_radians(j, answer.joints[j]))};
+  }
+  return plan_commander_joints(target, start, move.timing, move.tracking, settings.limits);
+}
+
+Planned plan_documented_pose(const Move& move, const JointSteps& start,
+                             const PlannerSettings& settings) {
+  const auto arm = arm::parol6_commander();
+  const auto pose = pose_of(move.target, settings.convention);
+  const auto target = reach(arm, *arm::SphericalWrist::of(arm), pose, radians_of(start), 0);
+  if (!target) return tl::unexpected{target.error()};
+  return plan_documented_joints(*target, start, move.timing, move.tracking, settings.limits);
+}
+
+Planned plan_line(const Move& move, const JointSteps& start, const PlannerSettings& settings) {
+  const bool is_relative = move.kind == Move::Kind::kToolLine;
+  const auto convention = is_relative ? arm::Convention::kXyz : settings.convention;
+  const LineTarget target{pose_of(move.target, convention), is_relative};
+  return settings.rules == Rules::kDocumented
+             ? plan_documented_line(target, start, move.timing, move.tracking, settings)
+             : plan_commander_line(target, start, move.timing, move.tracking);
+}
+
+}  // namespace
+
+Planned plan(const Move& move, const JointSteps& start, const PlannerSettings& settings) {
+  switch (move.kind) {
+    case Move::Kind::kJoint:
+      return plan_joints(move, start, settings);
+    case Move::Kind::kPose:
+      return settings.rules == Rules::kDocumented ? plan_documented_pose(move, start, settings)
+                                                  : plan_commander_pose(move, start, settings);
+    case Move::Kind::kLine:
+    case Move::Kind::kToolLine:
+      break;
+  }
+  return plan_line(move, start, settings);
+}
+
+}  // namespace armjig::parol6

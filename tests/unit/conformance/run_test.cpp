@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine, with made-up suites and devices that die, change their minds or lie.
+#include "conformance/run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A device that is a number: cases look at it, start states set it.
+class NumberBench final : public Bench {
+ public:
+  bool is_alive() override { return !is_dead; }
+  void bring_to(std::size_t start) override {
+    visited.push_back(start);
+    if (start == kUnreachable) fail("the state", "another one");
+  }
+  void measure_noise() override { ++measured; }
+  [[nodiscard]] Duration noise() const override { return 3us; }
+  [[nodiscard]] Instant now() const override { return at(1s * calls); }
+  [[nodiscard]] const std::optional<Error>& error() const override { return link_error; }
+  [[nodiscard]] std::string last_exchange() const override { return "the last exchange\n"; }
+
+  static constexpr std::size_t kUnreachable = 2;
+
+  std::vector<std::size_t> visited;
+  std::vector<std::string> ran;
+  std::vector<std::uint32_t> randoms;
+  std::optional<Error> link_error;
+  int calls = 0;
+  int measured = 0;
+  bool is_dead = false;
+  bool obeys_firmware = true;
+
+ protected:
+  void forget_exchange() override {}
+};
+
+NumberBench& number(Bench& bench) {
+  auto& device = static_cast<NumberBench&>(bench);
+  ++device.calls;
+  return device;
+}
+
+void passes(Bench& bench) {
+  number(bench).ran.emplace_back("passes");
+  number(bench).randoms.push_back(bench.random());
+}
+void passes_too(Bench& bench) {
+  number(bench).ran.emplace_back("passes too");
+  number(bench).randoms.push_back(bench.random());
+}
+void fails_twice(Bench& bench) {
+  number(bench).ran.emplace_back("fails");
+  bench.fail("one", "two");
+  bench.fail("three", "four");
+}
+void fails_every_other_time(Bench& bench) {
+  if (number(bench).calls % 2 == 0) bench.fail("an odd call", "an even one");
+}
+void dies(Bench& bench) {
+  number(bench).is_dead = true;
+  bench.fail_by_silence("an answer", "silence");
+}
+void loses_link(Bench& bench) { number(bench).link_error = Error{ErrorCode::kDisconnected, 0}; }
+void is_quiet_once(Bench& bench) { bench.fail_by_silence("an answer", "silence"); }
+void skips(Bench& bench) { bench.skip("no hand"); }
+void breaks_document(Bench& bench) { bench.fail("what the document says", "something else"); }
+void obeys_firmware(Bench& bench) {
+  if (!number(bench).obeys_firmware) bench.fail("what the firmware does", "something else");
+}
+
+constexpr Requirement kRequirements[] = {
+    {"n.pass", Level::kMust, "It passes.", "here"},
+    {"n.too", Level::kMust, "It passes too.", "here"},
+    {"n.fail", Level::kMust, "It is one.", "here"},
+    {"n.flaky", Level::kMust, "It is odd.", "here"},
+    {"n.dies", Level::kMust, "It lives.", "here"},
+    {"n.link", Level::kMust, "It is there.", "here"},
+    {"n.quiet", Level::kMust, "It answers.", "here"},
+    {"n.skips", Level::kMust, "It has hands.", "here"},
+    {"n.documented", Level::kMust, "It is documented.", "here", Profiles::kDocumented,
+     "n.firmware"},
+    {"n.firmware", Level::kMust, "It is shipped.", "here", Profiles::kFirmware, "n.documented"},
+    {"n.beyond", Level::kMust, "It can be reached.", "here"},
+    {"n.moves", Level::kMust, "It moves.", "here"},
+};
+
+constexpr Case kCases[] = {
+    {.requirement = "n.moves", .rule = "r", .run = passes, .hazard = Hazard::kMove, .start = 1},
+    {.requirement = "n.pass", .rule = "r", .run = passes},
+    {.requirement = "n.too", .rule = "r", .run = passes_too, .start = 1},
+    {.requirement = "n.fail", .rule = "r", .run = fails_twice},
+    {.requirement = "n.flaky", .rule = "r", .run = fails_every_other_time},
+    {.requirement = "n.quiet", .rule = "r", .run = is_quiet_once, .tier = Tier::kFull},
+    {.requirement = "n.skips", .rule = "r", .run = skips},
+    {.requirement = "n.beyond", .variant = "a", .rule = "r", .run = passes, .start = 2},
+    {.requirement = "n.beyond", .variant = "b", .rule = "r", .run = passes, .start = 2},
+    {.requirement = "n.dies", .rule = "r", .run = dies},
+    {.requirement = "n.link", .rule = "r", .run = loses_link},
+    {.requirement = "n.documented", .rule = "r", .run = breaks_document},
+    {.requirement = "n.firmware", .rule = "r", .run = obeys_firmware},
+};
+
+constexpr StartState kStarts[] = {
+    {"zero", Hazard::kObserve}, {"one", Hazard::kObserve}, {"beyond reach", Hazard::kObserve}};
+constexpr Chapter kChapters[] = {{"Numbers", kRequirements, kCases}};
+constexpr Suite kSuite{"n", "7", kChapters, kStarts, nullptr};
+
+Report run(NumberBench& bench, const std::string& filter, RunOptions options = {}) {
+  options.selection.filter = filter;
+  options.permissions.add(Hazard::kMove);
+  options.command = "armjig conformance n";
+  return run_suite(kSuite, bench, options, [](const ReportRow&) {});
+}
+
+Report run(const std::string& filter, const RunOptions& options = {}) {
+  NumberBench bench;
+  return run(bench, filter, options);
+}
+
+std::vector<std::string> verdicts(const Report& report) {
+  std::vector<std::string> words;
+  for (const auto& row : report.rows) {
+    words.push_back(row.name + " " + std::string{to_string(row.verdict)});
+  }
+  return words;
+}
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(ConformanceRun, TellsAFailureWithAllThatIsKnownAboutIt) {
+  const auto report = run("n.fail");
+  ASSERT_EQ(report.rows.size(), 1U);
+  const auto& row = report.rows[0];
+  EXPECT_EQ(row.verdict, Verdict::kFail);
+  EXPECT_EQ(row.expected, "one") << "the first finding decides";
+  EXPECT_EQ(row.actual, "two");
+  EXPECT_EQ(row.demand, "It is one.");
+  EXPECT_EQ(row.source, "here");
+  EXPECT_EQ(row.evidence, "the last exchange\n");
+  EXPECT_EQ(row.repeat, "armjig conformance n --filter n.fail");
+}
+
+TEST(ConformanceRun, NamesTheCatalogueAndTheSeed) {
+  const auto report = run("n.pass", {.seed = 5});
+  EXPECT_THAT(report.facts,
+              testing::Contains(std::pair<std::string, std::string>{"catalogue", "7"}));
+  EXPECT_THAT(report.facts, testing::Contains(std::pair<std::string, std::string>{"seed", "5"}));
+}
+
+TEST(ConformanceRun, GoesFromStartStateToStartState) {
+  NumberBench bench;
+  (void)run(bench, "");
+  EXPECT_TRUE(std::ranges::is_sorted(bench.visited)) << "start 0 first, then 1, then 2";
+}
+
+TEST(ConformanceRun, GivesUpAStartStateOnce) {
+  NumberBench bench;
+  const auto report = run(bench, "n.beyond");
+  EXPECT_THAT(verdicts(report), ElementsAre("n.beyond.a inconclusive", "n.beyond.b inconclusive"));
+  EXPECT_THAT(report.rows[1].actual, HasSubstr("beyond reach"));
+  EXPECT_EQ(bench.visited.size(), 1U);
+  EXPECT_THAT(bench.ran, IsEmpty());
+}
+
+TEST(ConformanceRun, SkipsWhatIsNotAllowed) {
+  NumberBench bench;
+  const auto report =
+      run_suite(kSuite, bench, {.selection = {.filter = "n.moves"}}, [](const ReportRow&) {});
+  EXPECT_THAT(verdicts(report), ElementsAre("n.moves skipped"));
+  EXPECT_EQ(report.rows[0].actual, "needs --allow move");
+  EXPECT_EQ(conclusion_of(report), Conclusion::kNothing);
+}
+
+TEST(ConformanceRun, TellsATargetThatDiedFromOneThatFails) {
+  EXPECT_THAT(verdicts(run("n.quiet")), ElementsAre("n.quiet fail")) << "it answers afterwards";
+  EXPECT_THAT(verdicts(run("n.d")), ElementsAre("n.alive error", "n.dies error"));
+}
+
+TEST(ConformanceRun, RunsNothingMoreOnceTheTargetIsGone) {
+  NumberBench bench;
+  bench.is_dead = true;
+  const auto report = run(bench, "n.pass");
+  EXPECT_THAT(verdicts(report), ElementsAre("n.alive error", "n.pass skipped"));
+  EXPECT_EQ(conclusion_of(report), Conclusion::kRig);
+  EXPECT_EQ(bench.measured, 0);
+}
+
+TEST(ConformanceRun, BlamesALinkThatBreaksOnTheRig) {
+  const auto report = run("n.link");
+  EXPECT_THAT(verdicts(report), ElementsAre("n.link error"));
+  EXPECT_EQ(conclusion_of(report), Conclusion::kRig);
+}
+
+TEST(ConformanceRun, CallsFlakyWhatIsNotAlwaysTheSame) {
+  const auto report = run("n.flaky", {.repeat = 4});
+  EXPECT_THAT(verdicts(report), ElementsAre("n.flaky flaky"));
+  EXPECT_THAT(report.rows[0].actual, HasSubstr("in 2 of 4 runs"));
+  EXPECT_THAT(verdicts(run("n.fail", {.repeat = 3})), ElementsAre("n.fail fail"));
+}
+
+TEST(ConformanceRun, StopsAtTheFirstFailureIfAsked) {
+  const auto report = run("n.f", {.stops_at_first_failure = true});
+  EXPECT_THAT(verdicts(report),
+              ElementsAre("n.fail fail", "n.flaky skipped", "n.firmware skipped"));
+}
+
+TEST(ConformanceRun, JudgesByTheProfileThatWasAskedFor) {
+  EXPECT_THAT(verdicts(run("n.firmware")), ElementsAre("n.firmware pass"));
+  EXPECT_THAT(verdicts(run("n.documented")), IsEmpty());
+}
+
+TEST(ConformanceRun, CallsADeviationWhatTheShippedDeviceIsKnownToDo) {
+  const RunOptions documented{.profile = Profile::kDocumented};
+  EXPECT_THAT(verdicts(run("n.documented", documented)), ElementsAre("n.documented deviation"));
+  NumberBench other;
+  other.obeys_firmware = false;
+  EXPECT_THAT(verdicts(run(other, "n.documented", documented)), ElementsAre("n.documented fail"));
+}
+
+TEST(ConformanceRun, GivesACaseTheSameRandomBytesWhateverRunsBesideIt) {
+  NumberBench alone;
+  NumberBench among_others;
+  NumberBench otherwise;
+  (void)run(alone, "n.too");
+  (void)run(among_others, "");
+  (void)run(otherwise, "n.too", {.seed = 2});
+  EXPECT_EQ(alone.randoms.back(), among_others.randoms.back());
+  EXPECT_NE(alone.randoms.back(), otherwise.randoms.back());
+}
+
+TEST(ConformanceRun, ExcusesWhatAWaiverNames) {
+  const std::vector<Waiver> waivers{{"n.fail", "known since spring", {}}};
+  const auto report = run("n.fail", {.waivers = waivers});
+  EXPECT_THAT(verdicts(report), ElementsAre("n.fail deviation"));
+  EXPECT_THAT(report.rows[0].actual, HasSubstr("known since spring"));
+}
+
+TEST(ConformanceRun, ReportsWaiversThatExcuseNothingInAFullRun) {
+  const std::vector<Waiver> waivers{{"n.pass", "not needed any more", {}}};
+  EXPECT_THAT(verdicts(run("", {.waivers = waivers})), testing::Contains("n.pass.waived error"));
+  EXPECT_THAT(verdicts(run("n.pass", {.waivers = waivers})), ElementsAre("n.pass pass"));
+}
+
+std::set<std::string> names(const std::vector<const Case*>& cases) {
+  std::set<std::string> names;
+  for (const auto* one : cases) names.insert(name_of(*one));
+  return names;
+}
+
+TEST(ConformanceSelection, ShardsHaveEveryCaseOnce) {
+  const auto all = select(kSuite, Profile::kFirmware, {});
+  for (const std::size_t count : {1U, 2U, 3U, 5U, 40U}) {
+    std::size_t total = 0;
+    std::set<std::string> seen;
+    for (std::size_t index = 1; index <= count; ++index) {
+      const auto part = select(kSuite, Profile::kFirmware, {.shard = {index, count}});
+      total += part.size();
+      seen.merge(names(part));
+    }
+    EXPECT_EQ(total, all.size()) << count;
+    EXPECT_EQ(seen, names(all)) << count;
+  }
+}
+
+TEST(ConformanceSelection, LeavesOutWhatTakesLongInTheQuickTier) {
+  const auto quick = names(select(kSuite, Profile::kFirmware, {.tier = Tier::kQuick}));
+  EXPECT_FALSE(quick.contains("n.quiet"));
+  EXPECT_TRUE(quick.contains("n.pass"));
+}
+
+TEST(ConformanceSelection, ReadsShards) {
+  EXPECT_EQ(parse_shard("2/4")->index, 2U);
+  EXPECT_EQ(parse_shard("2/4")->count, 4U);
+  for (const auto* text : {"", "2", "/", "0/4", "5/4", "1/0", "1/4x", "a/b", "-1/4", "1/4/2"}) {
+    EXPECT_FALSE(parse_shard(text)) << text;
+  }
+}
+
+constexpr std::chrono::year_month_day kToday{std::chrono::year{2026}, std::chrono::month{11},
+                                             std::chrono::day{21}};
+
+Outcome<std::vector<Waiver>> waivers(const std::string& entries) {
+  return parse_waivers(R"({"schema": "armjig.waivers/1", "waivers": [)" + entries + "]}", kSuite,
+                       kToday, "w.json");
+}
+
+TEST(ConformanceWaivers, AreReadWithReasonAndLastDay) {
+  const auto read =
+      waivers(R"({"requirement": "n.fail", "reason": "why", "expires": "2026-11-21"})");
+  ASSERT_TRUE(read) << describe(read.error());
+  EXPECT_EQ(read->at(0).requirement, "n.fail");
+  EXPECT_EQ(read->at(0).reason, "why");
+  EXPECT_EQ(to_string(read->at(0).expires), "2026-11-21");
+}
+
+TEST(ConformanceWaivers, AreRefusedWithTheReasonWhy) {
+  const auto hint = [](const std::string& entries) { return describe(waivers(entries).error()); };
+  EXPECT_THAT(hint(R"({"requirement": "n.fail", "reason": "why", "expires": "2026-11-20"})"),
+              HasSubstr("expired on 2026-11-20"));
+  EXPECT_THAT(hint(R"({"requirement": "n.none", "reason": "why", "expires": "2027-01-01"})"),
+              HasSubstr("n.none"));
+  EXPECT_THAT(hint(R"({"requirement": "n.fail", "reason": "", "expires": "2027-01-01"})"),
+              HasSubstr("reason"));
+  EXPECT_THAT(hint(R"({"requirement": "n.fail", "reason": "why", "expires": "2027-02-30"})"),
+              HasSubstr("date"));
+  const auto twice =
+      std::string{R"({"requirement": "n.fail", "reason": "w", "expires": "2027-01-01"})"};
+  EXPECT_THAT(hint(twice + "," + twice), HasSubstr("twice"));
+  for (const auto* text : {"", "[]", "{}", R"({"schema": "armjig.waivers/1"})"}) {
+    EXPECT_FALSE(parse_waivers(text, kSuite, kToday, "w.json")) << text;
+  }
+}
+
+}  // namespace
+}  // namespace armjig

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// All suites: what their catalogues promise, and that they hold against the emulated devices.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "conformance/run.hpp"
+#include "conformance/selection.hpp"
+#include "conformance/suite.hpp"
+#include "harness/rig/target.hpp"
+
+namespace armjig {
+namespace {
+
+const Suite& suite_of(std::string_view device) {
+  return *std::ranges::find(suites(), device, &Suite::device);
+}
+
+Report run(std::string_view device, const std::string& target, RunOptions options = {}) {
+  const auto& suite = suite_of(device);
+  const auto bench = suite.open({.target = *parse_target(target)});
+  options.permissions = Permissions::all();
+  return run_suite(suite, **bench, options, [](const ReportRow&) {});
+}
+
+std::vector<std::string> but_for(const Report& report, Verdict verdict) {
+  std::vector<std::string> rows;
+  for (const auto& row : report.rows) {
+    if (row.verdict != verdict) rows.push_back(to_text(row));
+  }
+  return rows;
+}
+
+TEST(Suites, HaveUniqueNamesAndACaseForEachRequirementOrAReason) {
+  for (const auto& suite : suites()) {
+    std::set<std::string> ids;
+    std::set<std::string> texts;
+    std::set<std::string> cases;
+    std::set<std::string> checked;
+    for (const auto& chapter : suite.chapters) {
+      for (const auto& one : chapter.cases) {
+        EXPECT_TRUE(cases.insert(name_of(one)).second) << name_of(one);
+        ASSERT_NE(find_requirement(suite, one.requirement), nullptr) << one.requirement;
+        EXPECT_LT(one.start, suite.starts.size()) << name_of(one);
+        checked.emplace(one.requirement);
+      }
+      for (const auto& requirement : chapter.requirements) {
+        EXPECT_TRUE(ids.emplace(requirement.id).second) << requirement.id;
+        EXPECT_TRUE(texts.emplace(requirement.text).second) << requirement.text;
+      }
+    }
+    for (const auto& chapter : suite.chapters) {
+      for (const auto& requirement : chapter.requirements) {
+        if (requirement.role == Role::kHost) continue;
+        EXPECT_EQ(checked.contains(std::string{requirement.id}), requirement.unobservable.empty())
+            << requirement.id;
+      }
+    }
+  }
+}
+
+TEST(Suites, SayForDifferencesWhatTheOtherProfileHasInstead) {
+  for (const auto& suite : suites()) {
+    for (const auto& chapter : suite.chapters) {
+      for (const auto& requirement : chapter.requirements) {
+        if (requirement.profiles == Profiles::kDocumented) {
+          EXPECT_FALSE(requirement.instead.empty()) << requirement.id;
+        }
+        if (requirement.instead.empty()) continue;
+        const auto* other = find_requirement(suite, requirement.instead);
+        ASSERT_NE(other, nullptr) << requirement.id;
+        EXPECT_NE(other->profiles, Profiles::kBoth) << requirement.id;
+        EXPECT_NE(other->profiles, requirement.profiles) << requirement.id;
+      }
+    }
+  }
+}
+
+std::size_t count(const Suite& suite, Role role) {
+  std::size_t count = 0;
+  for (const auto& chapter : suite.chapters) {
+    count += static_cast<std::size_t>(
+        std::ranges::count_if(chapter.requirements, [&](const Requirement& requirement) {
+          return requirement.role == role && requirement.unobservable.empty();
+        }));
+  }
+  return count;
+}
+
+TEST(Parol6Suite, HasAtLeast150RequirementsForTheDeviceAnd25ForTheHost) {
+  EXPECT_GE(count(suite_of("parol6"), Role::kDevice), 150U);
+  EXPECT_GE(count(suite_of("parol6"), Role::kHost), 25U);
+}
+
+TEST(Parol6Suite, PassesOnTheEmulatedFirmware) {
+  EXPECT_THAT(but_for(run("parol6", "emulated:"), Verdict::kPass), testing::IsEmpty());
+}
+
+TEST(Parol6Suite, PassesOnTheFirmwareWithALongerLoop) {
+  EXPECT_THAT(but_for(run("parol6", "emulated:?pass-us=50"), Verdict::kPass), testing::IsEmpty());
+}
+
+TEST(Parol6Suite, PassesOnTheDocumentedBoard) {
+  EXPECT_THAT(
+      but_for(run("parol6", "emulated:?profile=documented", {.profile = Profile::kDocumented}),
+              Verdict::kPass),
+      testing::IsEmpty());
+}
+
+TEST(Parol6Suite, FindsExactlyTheMappedDeviationsOfTheFirmwareFromTheDocument) {
+  const auto report = run("parol6", "emulated:", {.profile = Profile::kDocumented});
+  for (const auto& row : report.rows) {
+    const auto& requirement = *find_requirement(suite_of("parol6"), row.requirement);
+    const auto wanted =
+        requirement.profiles == Profiles::kDocumented ? Verdict::kDeviation : Verdict::kPass;
+    EXPECT_EQ(row.verdict, wanted) << to_text(row);
+  }
+}
+
+/// Runs every case of the suite once, in a random order, on one and the same device.
+std::vector<std::string> findings_in_any_order(const Suite& suite, std::uint32_t seed) {
+  auto cases = select(suite, Profile::kFirmware, {});
+  std::ranges::shuffle(cases, std::mt19937{seed});
+  const auto bench = suite.open({.target = *parse_target("emulated:")});
+  std::vector<std::string> findings;
+  for (const auto* one : cases) {
+    (*bench)->begin(Profile::kFirmware, seed);
+    (*bench)->bring_to(one->start);
+    if (!(*bench)->is_over()) one->run(**bench);
+    const auto& judgement = (*bench)->judgement();
+    if (judgement.verdict == Verdict::kPass) continue;
+    findings.push_back(name_of(*one) + ": " + judgement.expected + ", but " + judgement.actual);
+  }
+  return findings;
+}
+
+// Filters, shards and repetitions all change what ran before a case.
+TEST(Suites, FindTheSameInWhateverOrderTheirCasesRun) {
+  for (const auto& suite : suites()) {
+    for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
+      EXPECT_THAT(findings_in_any_order(suite, seed), testing::IsEmpty());
+    }
+  }
+}
+
+TEST(Parol6Suite, GivesTheSameReportForTheSameSeed) {
+  const auto once = to_json(run("parol6", "emulated:", {.seed = 3}));
+  EXPECT_EQ(once, to_json(run("parol6", "emulated:", {.seed = 3})));
+}
+
+TEST(DemoSuite, PassesOnTheEmulatedDevice) {
+  EXPECT_THAT(but_for(run("demo", "emulated:"), Verdict::kPass), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace armjig

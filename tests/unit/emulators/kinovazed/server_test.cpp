@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/kinovazed/server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/unit/emulators/kinovazed/bench.hpp"
+
+namespace armjig::kinovazed {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Bench;
+using test::documented;
+
+constexpr auto kAccepted = "Accepted\r\n";
+
+// The matrix of the recordings, all of its cells that are there.
+
+const std::string& route_to(const std::string& state) {
+  static const std::map<std::string, std::string> kRoutes{
+      {"emergencyStopped", ""}, {"poweredOff", "Q"},
+      {"initializing", "QI"},   {"idle", "Qi"},
+      {"retracting", "QiR"},    {"retracted", "Qir"},
+      {"unfolding", "QirU"},    {"settingMode", "QiM"},
+      {"steering", "Qim"},      {"runningSequence", "QiO"},
+      {"frozen", "Qif"}};
+  return kRoutes.at(state);
+}
+
+/// Capital letters do not wait for the end.
+Bench bench_in(const std::string& state) {
+  const auto route = route_to(state);
+  const bool is_initializing = state == "initializing";
+  Bench bench{{},
+              {.start_mode = is_initializing ? ArmMode::kNeverHomed : ArmMode::kReady,
+               .initialise_s = 2.5,
+               .unfold_s = 2.5,
+               .retract_s = 2.5,
+               .linear_m_s = 0.25,
+               .rotation_rad_s = 1.0}};
+  for (const char step : route) {
+    const std::map<char, std::string_view> lines{{'Q', "QuitEStop\r\n"},
+                                                 {'I', "Initialize\r\n"},
+                                                 {'R', "Retract\r\n"},
+                                                 {'U', "Unfold\r\n"},
+                                                 {'M', "SetJoystickMode:XYZ\r\n"},
+                                                 {'O', "RunObjective:SuckDoor\r\n"},
+                                                 {'F', "Freeze\r\n"}};
+    bench.send(lines.at(static_cast<char>(std::toupper(step))));
+    bench.pass(step == 'r' ? 3s : std::islower(step) != 0 ? 700ms : 100ms);
+  }
+  bench.server.clear_sent();
+  return bench;
+}
+
+TEST(KinovaServer, AnswersAsTheMatrixOfTheRecordingsSays) {
+  std::ifstream in{ARMJIG_SOURCE_DIR "/captures/kinovazed/state-command-matrix.json"};
+  const auto table = nlohmann::json::parse(in);
+  ASSERT_GT(table["entries"].size(), 80U);
+  for (const auto& cell : table["entries"]) {
+    auto bench = bench_in(cell["state"]);
+    ASSERT_EQ(to_string(bench.server.state()), cell["state"].get<std::string>());
+    bench.send(cell["command"].get<std::string>() + "\r\n");
+    bench.pass(200ms);
+    std::string replies;
+    for (const auto& reply : cell["replies"]) {
+      const auto text = reply.get<std::string>();
+      replies += text.ends_with("\r\n") ? text : text + "\r\n";
+    }
+    EXPECT_EQ(bench.heard(bench.client), replies) << cell.dump();
+    EXPECT_EQ(to_string(bench.server.state()), cell["next_state"]) << cell.dump();
+  }
+}
+
+// Clients.
+
+TEST(KinovaServer, LetsASecondClientWait) {
+  Bench bench;
+  const auto second = bench.connect();
+  bench.send(second, "EStop\r\n");
+  bench.pass(1600ms);
+  EXPECT_EQ(bench.heard(second), "");
+  bench.server.close(bench.now, bench.client);
+  bench.pass(50ms);
+  EXPECT_EQ(bench.heard(second), kAccepted);
+}
+
+TEST(KinovaServer, ServesAWaitingClientThatHasClosedAndDiesOfOneThatHasReset) {
+  Bench bench;
+  const auto second = bench.connect();
+  bench.send(second, "QuitEStop\r\n");
+  bench.server.close(bench.now, second);
+  bench.server.close(bench.now, bench.client);
+  bench.pass(50ms);
+  EXPECT_EQ(bench.server.state(), State::kPoweredOff);
+  bench.client = bench.connect();
+  bench.pass(1ms);
+  const auto third = bench.connect();
+  bench.server.reset(bench.now, third);
+  bench.server.close(bench.now, bench.client);
+  bench.pass(50ms);
+  EXPECT_EQ(bench.server.life(), Server::Life::kEnded);
+  EXPECT_FALSE(bench.server.connect(bench.now));
+}
+
+struct CloseCase {
+  const char* name;
+  const char* lines;
+  void (Server::*leave)(Instant, ConnectionId);
+  std::string_view heard;
+  bool is_mute;
+};
+
+TEST(KinovaServer, GoesMuteIfTwoMessagesWaitWhenAWriteFails) {
+  const std::vector<CloseCase> cases{
+      {"one pair, reset", "Freeze\r\n", &Server::reset, "", true},
+      {"one pair, closed", "Freeze\r\n", &Server::close, "", false},
+      {"two pairs, closed", "Freeze\r\nUnfreeze\r\n", &Server::close, "", true},
+      {"one pair, half-closed", "Freeze\r\n", &Server::half_close, "Accepted\r\n<end>", false},
+      {"two pairs, half-closed", "Freeze\r\nUnfreeze\r\n", &Server::half_close,
+       "Accepted\r\nFreezed\r\n<end>", true},
+      {"single messages, closed", "MoveJoystick:1:1:1\r\nQuitEStop\r\nRetract\r\n", &Server::close,
+       "", false},
+  };
+  for (const auto& one : cases) {
+    Bench bench;
+    bench.to_idle();
+    bench.send(one.lines);
+    (bench.server.*one.leave)(bench.now, bench.client);
+    bench.pass(200ms);
+    const auto heard = bench.heard(bench.client);
+    EXPECT_EQ(heard, one.heard) << one.name;
+    bench.client = bench.connect();
+    EXPECT_EQ(bench.ask("EStop\r\n"), one.is_mute ? "" : kAccepted) << one.name;
+    EXPECT_EQ(bench.server.state(), State::kEmergencyStopped) << one.name;
+  }
+}
+
+TEST(KinovaServer, StopsNothingWhenItsClientLeaves) {
+  Bench bench;
+  bench.to_idle().go({"SetJoystickMode:XYZ", "MoveJoystick:0:0:40"});
+  const auto before = std::get<BenchArm>(bench.server.arm().plant()).pose().z;
+  bench.server.close(bench.now, bench.client);
+  bench.pass(2s);
+  EXPECT_GT(std::get<BenchArm>(bench.server.arm().plant()).pose().z, before + 0.02F);
+  bench.client = bench.connect();
+  EXPECT_EQ(bench.beat(), "69");
+  EXPECT_EQ(bench.ask("MoveJoystick:0:0:0\r\n"), kAccepted);
+}
+
+TEST(KinovaServer, EndsWithAFinOnSigterm) {
+  Bench bench;
+  bench.server.terminate(bench.now);
+  EXPECT_EQ(bench.heard(bench.client), "<end>");
+  EXPECT_FALSE(bench.server.connect(bench.now));
+}
+
+// Deaths.
+
+struct DeathCase {
+  const char* name;
+  std::vector<std::string_view> lines;  ///< from idle
+  void (*hurt)(ArmPort&);
+  const char* last;
+  Server::Life life;
+};
+
+TEST(KinovaServer, HangsOrDiesAsTheOriginal) {
+  const std::vector<DeathCase> cases{
+      {"velocity",
+       {},
+       [](ArmPort& arm) { arm.fail(ArmCall::kReadVelocity, {0, 1}); },
+       "",
+       Server::Life::kHung},
+      {"current",
+       {},
+       [](ArmPort& arm) { std::get<BenchArm>(arm.plant()).set_current_sum(4.6F); },
+       "",
+       Server::Life::kHung},
+      {"unplugged", {}, [](ArmPort& arm) { arm.unplug(); }, "", Server::Life::kHung},
+      {"mode write",
+       {},
+       [](ArmPort& arm) { arm.fail(ArmCall::kSelectCartesian, {0, 1}); },
+       "SetJoystickMode:XYZ\r\n",
+       Server::Life::kHung},
+      {"mode release",
+       {},
+       [](ArmPort& arm) { arm.fail(ArmCall::kReleaseStick, {1, 1}); },
+       "SetJoystickMode:XYZ\r\n",
+       Server::Life::kEnded},
+      {"current 4.4",
+       {},
+       [](ArmPort& arm) { std::get<BenchArm>(arm.plant()).set_current_sum(4.4F); },
+       "",
+       Server::Life::kRunning},
+      {"mode too soon",
+       {"SetJoystickMode:XYZ"},
+       [](ArmPort&) {},
+       "SetJoystickMode:XYZ\r\nEStop\r\nQuitEStop\r\nInitialize\r\nSetJoystickMode:Rotation\r\n",
+       Server::Life::kHung},
+      {"no mode too soon",
+       {"SetJoystickMode:XYZ"},
+       [](ArmPort&) {},
+       "SetJoystickMode:XYZ\r\nEStop\r\nQuitEStop\r\nInitialize\r\nSetJoystickMode:NoMode\r\n",
+       Server::Life::kRunning},
+  };
+  for (const auto& one : cases) {
+    Bench bench;
+    bench.to_idle();
+    for (const auto line : one.lines) bench.go({line});
+    bench.server.touch(bench.now, one.hurt);
+    bench.send(one.last);
+    bench.pass(300ms);
+    EXPECT_EQ(bench.server.life(), one.life) << one.name;
+    if (one.life != Server::Life::kHung) continue;
+    bench.server.clear_sent();
+    bench.pass(1500ms);
+    EXPECT_EQ(bench.ask("EStop\r\n"), "") << one.name;
+    bench.server.terminate(bench.now);
+    EXPECT_EQ(bench.server.life(), Server::Life::kHung) << "SIGTERM is ignored: " << one.name;
+  }
+}
+
+TEST(KinovaServer, HangsOnALaterPointOutsideAndDiesOfAMissingObjective) {
+  ServerOptions options;
+  options.objectives = ObjectiveSet{
+      {{Objective::kHome, Pose{}, {{0.2F, -0.2F, 0.5F, 1.6F, 1.1F, 0.1F}, {.x = 0.9F}}}}};
+  Bench bench{options};
+  bench.to_idle();
+  EXPECT_EQ(bench.ask("RunObjective:Home\r\n"), kAccepted);
+  bench.pass(5s);
+  EXPECT_EQ(bench.server.life(), Server::Life::kHung);
+  Bench other{options};
+  EXPECT_EQ(other.ask("RunObjective:Handle\r\n"), "<end>");
+  EXPECT_EQ(other.server.life(), Server::Life::kEnded);
+}
+
+TEST(KinovaServer, ComesBackTwoSecondsAfterItsDeathIfToldTo) {
+  ServerOptions options;
+  options.objectives = {};
+  options.on_death = OnDeath::kRestart;
+  Bench bench{options};
+  bench.go({"QuitEStop"});
+  EXPECT_EQ(bench.ask("RunObjective:Home\r\n"), "<end>");
+  EXPECT_FALSE(bench.server.connect(bench.now));
+  bench.pass(2s);
+  bench.client = bench.connect();
+  EXPECT_EQ(bench.beat(), "3");
+  EXPECT_EQ(bench.ask("QuitEStop\r\n"), kAccepted);
+}
+
+TEST(KinovaServer, DoesNotListenBeforeItHasFoundItsArm) {
+  ArmPort arm{BenchArm{}};
+  arm.unplug();
+  Server server{std::move(arm)};
+  EXPECT_FALSE(server.connect(at(3s)));
+  server.touch(at(3s), [](ArmPort& port) { port.plug(); });
+  EXPECT_TRUE(server.connect(at(4300ms)));
+}
+
+// Objectives and the console.
+
+TEST(KinovaServer, LogsPosesAsTheHowToWantsThem) {
+  Bench bench;
+  bench.to_idle();
+  EXPECT_EQ(bench.ask("GetObjectivePosition\r\nSetActiveObjective:Handle\r\nGetAbsolutePosition\r\n"
+                      "GetObjectivePosition\r\n"),
+            "");
+  ASSERT_EQ(bench.server.log().size(), 3U);
+  EXPECT_EQ(bench.server.log()[0].text, "no current objective");
+  EXPECT_TRUE(bench.server.log()[1].text.starts_with("Current arm position (abs): { \"X\":  "));
+  const auto& text = bench.server.log()[2].text;
+  EXPECT_TRUE(text.starts_with("Current arm position (obj): "));
+  const auto pose = nlohmann::json::parse(text.substr(text.find('{')));
+  EXPECT_EQ(pose.size(), 6U);
+}
+
+TEST(KinovaServer, NeverArrivesWithAnArmThatStandsPerfectlyStill) {
+  Bench still{{}, {.start_mode = ArmMode::kReady, .position_noise = 0}};
+  still.to_idle();
+  EXPECT_EQ(still.ask("RunObjective:Current\r\n"), kAccepted);
+  EXPECT_EQ(still.beat(), "37");
+  Bench real;
+  real.to_idle();
+  EXPECT_EQ(real.ask("RunObjective:Current\r\n"), "Accepted\r\nObjectiveDone\r\n");
+}
+
+TEST(KinovaServer, StaysStuckIfInitializationEndsFolded) {
+  Bench bench{{}, {}};
+  bench.go({"QuitEStop", "Initialize"});
+  bench.server.touch(
+      bench.now, [](ArmPort& arm) { std::get<BenchArm>(arm.plant()).set_mode(ArmMode::kFolded); });
+  bench.pass(50ms);
+  EXPECT_EQ(bench.heard(bench.client), "Retracted\r\n");
+  EXPECT_EQ(bench.ask("Unfold\r\nRetract\r\n"), "Rejected\r\nRejected\r\n");
+  EXPECT_EQ(bench.server.state(), State::kInitializing);
+}
+
+TEST(KinovaServer, RetractsFromAnywhereByWayOfReady) {
+  Bench bench;
+  bench.to_idle();
+  bench.server.touch(bench.now, [](ArmPort& arm) {
+    std::get<BenchArm>(arm.plant()).set_mode(ArmMode::kElsewhere);
+  });
+  bench.pass(50ms);
+  EXPECT_EQ(bench.ask("Retract\r\n"), kAccepted);
+  bench.pass(2500ms);
+  EXPECT_EQ(bench.heard(bench.client), "");
+  bench.pass(500ms);
+  EXPECT_EQ(bench.heard(bench.client), "Retracted\r\n");
+  EXPECT_EQ(bench.beat(), "133");
+}
+
+TEST(KinovaServer, BoundsTheJoystickAtTheEdge) {
+  Bench bench;
+  bench.to_idle().go({"SetJoystickMode:XYZ"});
+  const auto x = [&] { return std::get<BenchArm>(bench.server.arm().plant()).pose().x; };
+  bench.server.touch(bench.now, [](ArmPort& arm) {
+    std::get<BenchArm>(arm.plant()).set_pose({.x = 0.7905F, .z = 0.5F});
+  });
+  bench.pass(50ms);
+  EXPECT_EQ(bench.ask("MoveJoystick:-100:0:0\r\n"), kAccepted);
+  EXPECT_GT(x(), 0.7899F);
+  EXPECT_EQ(bench.ask("MoveJoystick:100:0:0\r\n"), kAccepted);
+  bench.server.touch(bench.now, [](ArmPort& arm) {
+    std::get<BenchArm>(arm.plant()).set_pose({.x = 0.5F, .z = 0.5F});
+  });
+  EXPECT_EQ(bench.ask("MoveJoystick:-100:0:0\r\n"), kAccepted);
+  EXPECT_LT(x(), 0.5F);
+}
+
+// The document's server.
+
+TEST(KinovaDocumented, AnswersWithTheOneEventOfACommand) {
+  Bench bench{documented(), {.start_mode = ArmMode::kReady}};
+  EXPECT_EQ(bench.ask("EStop\r\nQuitEStop\r\nInitialize\r\n"),
+            "Accepted\r\nAccepted\r\nInitialized\r\n");
+  EXPECT_EQ(bench.ask("Freeze\r\n"), "Freezed\r\n");
+  EXPECT_EQ(bench.ask("Freeze\r\n"), "Freezed\r\n");
+  EXPECT_EQ(bench.ask("Unfreeze\r\n"), "Unfreezed\r\n");
+  EXPECT_EQ(bench.ask("Unfreeze\r\n"), "Unfreezed\r\n");
+  EXPECT_EQ(bench.ask("RunObjective:Current\r\n"), "ObjectiveDone\r\n");
+  EXPECT_EQ(bench.ask("Unfreeze\r\n"), "Rejected\r\n");
+  EXPECT_EQ(bench.ask("MoveJoystick:1:2:3\r\n"), "Rejected\r\n");
+}
+
+TEST(KinovaDocumented, RejectsWhatIsNoCommand) {
+  Bench bench{documented()};
+  EXPECT_EQ(bench.ask("Foo\r\n\nEStop\r\n estop\r\nRunObjective:FindBottle\r\n"),
+            "Rejected\r\nAccepted\r\nRejected\r\nRejected\r\n");
+  EXPECT_EQ(bench.ask(std::string(1025, 'B')), "<end>");
+}
+
+TEST(KinovaDocumented, ShowsALostArmInItsBeats) {
+  Bench bench{documented()};
+  bench.to_idle();
+  bench.server.touch(bench.now, [](ArmPort& arm) { arm.unplug(); });
+  EXPECT_EQ(bench.beat(), "20");
+  bench.server.touch(bench.now, [](ArmPort& arm) { arm.plug(); });
+  EXPECT_EQ(bench.beat(), "3");
+}
+
+TEST(KinovaDocumented, SurvivesWhatKillsTheOriginal) {
+  for (const auto call : {ArmCall::kReadVelocity, ArmCall::kSelectCartesian}) {
+    Bench bench{documented()};
+    bench.to_idle();
+    bench.server.touch(bench.now, [&](ArmPort& arm) { arm.fail(call, {0, 1}); });
+    bench.ask("SetJoystickMode:XYZ\r\n");
+    EXPECT_EQ(bench.beat(), "3");
+    EXPECT_EQ(bench.ask("QuitEStop\r\n"), kAccepted);
+  }
+}
+
+// A value.
+
+TEST(KinovaServer, GoesOnInACopyAsInTheOriginal) {
+  Bench bench{{}, {}};
+  bench.go({"QuitEStop"});
+  bench.send("Initialize\r\nESt");
+  bench.pass(5ms);
+  auto copy = bench;
+  for (auto* one : {&bench, &copy}) {
+    one->pass(3s);
+    one->send("op\r\n");
+    one->pass(100ms);
+  }
+  ASSERT_EQ(bench.server.sent().size(), copy.server.sent().size());
+  for (std::size_t i = 0; i < bench.server.sent().size(); ++i) {
+    EXPECT_EQ(bench.server.sent()[i].bytes, copy.server.sent()[i].bytes);
+    EXPECT_EQ(bench.server.sent()[i].time, copy.server.sent()[i].time);
+  }
+}
+
+TEST(KinovaServer, CanPutTheEventBeforeItsReply) {
+  ServerOptions options;
+  options.race = RaceOrder::kEventFirst;
+  Bench bench{options};
+  bench.go({"QuitEStop"});
+  EXPECT_EQ(bench.ask("Initialize\r\n"), "Initialized\r\nAccepted\r\n");
+}
+
+}  // namespace
+}  // namespace armjig::kinovazed

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/script/check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/unit/script/programs.hpp"
+
+namespace armjig::script {
+namespace {
+
+using test::program_of;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::vector<std::string> said(std::string_view lines, Dialect dialect = Dialect::kDocumented) {
+  std::vector<std::string> texts;
+  for (const auto& diagnostic : check(program_of(lines, dialect))) {
+    texts.push_back(describe(diagnostic, "p"));
+  }
+  return texts;
+}
+
+TEST(Check, HasNothingToSayOfAGoodProgram) {
+  EXPECT_THAT(said("MoveJoint(0, -90, 180, 0, 0, 180, t=4, trap)\n"
+                   "MoveJoint(0, -90, 180, 0, 0, 180, v=4, a=5, speed)\n"
+                   "Gripper(1, 2, 300)\nDelay(1)\nMoveCart(1, 2, 3, 4, 5, 6)\n"
+                   "Gripper_cal()\nDelay(2)\nDelay(2)\nGripper(1, 2, 300)"),
+              IsEmpty());
+}
+
+TEST(Check, FindsAGripperThatIsNotWaitedFor) {
+  EXPECT_THAT(said("Gripper(1, 2, 300)\nMoveJoint(0, -90, 180, 0, 0, 180)"),
+              ElementsAre(HasSubstr("p:3:1: warning: the gripper is not waited for")));
+  EXPECT_THAT(said("Gripper_cal()\nDelay(2)\nGripper(1, 2, 300)"),
+              ElementsAre(HasSubstr("p:4:1: warning: the gripper's calibration takes 4 s, and is "
+                                    "given 2.00")));
+}
+
+TEST(Check, FindsArgumentsThatDoNothing) {
+  EXPECT_THAT(said("MoveJoint(0, -90, 180, 0, 0, 180, v=4, t=5)"),
+              ElementsAre(HasSubstr("v and a do nothing beside t")));
+  EXPECT_THAT(said("MoveJoint(0, -90, 180, 0, 0, 180, v=4)"),
+              ElementsAre(HasSubstr("v and a count only together")));
+  EXPECT_THAT(said("MovePose(0, -90, 180, 0, 0, 180, v=4, a=4, poly)"),
+              ElementsAre(HasSubstr("trap and poly do nothing without t")));
+  EXPECT_THAT(said("MoveCart(0,0,0,0,0,0,v=4,a=4)", Dialect::kCommander),
+              ElementsAre(HasSubstr("v and a do nothing on a line")));
+}
+
+TEST(Check, FindsWhatIsNeverReached) {
+  EXPECT_THAT(said("Delay(1)\nEnd()\nDelay(1)"),
+              ElementsAre(HasSubstr("p:4:1: warning: this is never reached")));
+}
+
+TEST(Check, FindsWhereTheCommanderStumbles) {
+  EXPECT_THAT(said("Gripper(1,2,5)\nDelay(1)\nHome()\nDelay()", Dialect::kCommander),
+              ElementsAre(HasSubstr("p:2:1: warning: the commander skips this"),
+                          HasSubstr("p:4:1: error: the commander has no code"),
+                          HasSubstr("p:5:1: error: the delay '' is no number")));
+}
+
+TEST(Check, SaysHowLongItTakes) {
+  const auto program = program_of("Delay(1.5)", Dialect::kDocumented);
+  const auto found = check(program, test::schedule_of(program));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(describe(found.front(), "p"), "p:3:1: note: takes 1.50 s");
+}
+
+}  // namespace
+}  // namespace armjig::script

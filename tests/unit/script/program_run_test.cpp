@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/script/program_run.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emulators/parol6/arm.hpp"
+#include "harness/arm/arm.hpp"
+#include "harness/arm/models.hpp"
+#include "harness/drive/parol6/drive_loop.hpp"
+#include "harness/link/memory_stream.hpp"
+#include "harness/motion/parol6/conversion.hpp"
+#include "harness/script/run_output.hpp"
+#include "harness/script/schedule.hpp"
+#include "tests/unit/report/validity.hpp"
+#include "tests/unit/script/programs.hpp"
+
+namespace armjig::script {
+namespace {
+
+using namespace std::chrono_literals;
+using parol6::Activity;
+using parol6::JointSteps;
+using ::testing::HasSubstr;
+
+/// A drive and an emulated arm on virtual time.
+class Jig {
+ public:
+  std::optional<Activity::Ending> go_through(Activity& activity) {
+    const auto end = port.now() + 10min;
+    while (port.now() < end) {
+      if (!loop.cycle()) return std::nullopt;
+      if (drive.telemetry()) seen.push_back(drive.telemetry()->position);
+      if (auto ending = activity.step(drive, port.now(), drive.take_events())) return ending;
+    }
+    return std::nullopt;
+  }
+
+  void home() {
+    const auto homing = parol6::begin_home(drive);
+    ASSERT_TRUE(homing.has_value());
+    const auto ending = go_through(**homing);
+    ASSERT_TRUE(ending && ending->is_success);
+    seen.clear();
+  }
+
+  MemoryStream<parol6::Arm> port{parol6::Arm{}};
+  parol6::Drive drive;
+  parol6::DriveLoop loop{port, drive};
+  std::vector<JointSteps> seen;  ///< telemetry of each cycle
+};
+
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& path) {
+  std::ifstream in{path, std::ios::binary};
+  return {std::istreambuf_iterator<char>{in}, {}};
+}
+
+std::vector<std::string> examples() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator{ARMJIG_SOURCE_DIR "/harness/script/examples"}) {
+    names.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+class Example : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    const auto path =
+        fs::path{ARMJIG_SOURCE_DIR "/harness/script/examples"} / (GetParam() + ".rbt");
+    auto parsed = parse(read(path), Dialect::kDocumented);
+    ASSERT_TRUE(parsed.has_value()) << describe(parsed.error().front(), path.string());
+    program_ = *std::move(parsed);
+  }
+
+  Program program_;
+};
+
+TEST_P(Example, BringsTheEmulatedArmToWhereThePlanEnds) {
+  const auto plan = test::schedule_of(program_);
+  ASSERT_FALSE(plan.stop.has_value()) << plan.stop->text;
+  Jig jig;
+  jig.home();
+  ASSERT_EQ(jig.drive.telemetry()->position, test::kStandby);
+  ProgramRun run{program_, {}};
+  const auto ending = jig.go_through(run);
+  ASSERT_TRUE(ending.has_value());
+  ASSERT_TRUE(ending->is_success) << ending->text;
+  ASSERT_EQ(run.moves().size(), plan.moves.size());
+  for (const auto& move : run.moves()) {
+    if (move.tracking == parol6::Tracking::kSpeed) continue;
+    for (const auto error : move.final_error) {
+      EXPECT_LE(std::abs(error), 1) << "line " << program_.statements[move.statement].place.line;
+    }
+  }
+  if (run.moves().empty() || run.moves().back().tracking == parol6::Tracking::kSpeed) return;
+  for (std::size_t j = 0; j < parol6::kJointCount; ++j) {
+    EXPECT_NEAR(jig.drive.telemetry()->position[j].value, plan.positions.back()[j].value, 1) << j;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, Example, ::testing::ValuesIn(examples()),
+                         [](const auto& example) { return example.param; });
+
+/// How far a way of the tool is from the straight one between its ends.
+struct Crookedness {
+  double millimetres{};
+  double degrees{};
+};
+
+Crookedness crookedness_of(const std::vector<JointSteps>& way) {
+  const auto arm = arm::parol6_commander();
+  const auto pose_of = [&](const JointSteps& steps) {
+    return arm::forward(arm, parol6::radians_of(steps));
+  };
+  const auto first = pose_of(way.front());
+  const auto last = pose_of(way.back());
+  const auto along = last.position - first.position;
+  const auto turn = arm::rotation_vector(last.rotation * inverse(first.rotation));
+  Crookedness most;
+  for (const auto& steps : way) {
+    const auto pose = pose_of(steps);
+    const auto gone = pose.position - first.position;
+    const auto turned = arm::rotation_vector(pose.rotation * inverse(first.rotation));
+    // Of what moves only by roundings, no share can be told.
+    const bool is_turn = norm(along) < 1e-3;
+    const double share =
+        is_turn ? dot(turned, turn) / dot(turn, turn) : dot(gone, along) / dot(along, along);
+    most.millimetres = std::max(most.millimetres, 1000 * norm(gone - share * along));
+    const double angle = share * norm(turn);
+    const auto straight =
+        norm(turn) == 0 ? first.rotation
+                        : arm::rotation_about((1 / norm(turn)) * turn, angle) * first.rotation;
+    most.degrees =
+        std::max(most.degrees, parol6::to_degrees(arm::angle_between(pose.rotation, straight)));
+  }
+  return most;
+}
+
+/// One line from a posture at rest.
+class StraightLine : public ::testing::TestWithParam<std::string_view> {};
+
+TEST_P(StraightLine, IsStraightByTheTelemetry) {
+  const auto start = test::program_of("MoveJoint(90, -85, 170, 0, 30, 180, t=3)\nDelay(0.2)",
+                                      Dialect::kDocumented);
+  const auto line = test::program_of(GetParam(), Dialect::kDocumented);
+  Jig jig;
+  jig.home();
+  ProgramRun to_start{start, {}};
+  ASSERT_TRUE(jig.go_through(to_start)->is_success);
+  jig.seen.clear();
+  ProgramRun run{line, {}};
+  const auto ending = jig.go_through(run);
+  ASSERT_TRUE(ending && ending->is_success) << ending->text;
+  const auto [millimetres, degrees] = crookedness_of(jig.seen);
+  EXPECT_LT(millimetres, 0.1);
+  EXPECT_LT(degrees, 0.1);
+  EXPECT_NE(jig.seen.front(), jig.seen.back());
+}
+
+INSTANTIATE_TEST_SUITE_P(Lines, StraightLine,
+                         ::testing::Values("MoveCart(-30, 280, 230, -90, 0, -75, t=3)",
+                                           "MoveCart(40, 270, 240, -80, 5, -70, t=4, trap)",
+                                           "MoveCartRelTRF(-60, 20, 10, 0, 0, 0, t=3, poly)",
+                                           "MoveCartRelTRF(0, 0, 0, 20, 0, 0, t=2)",
+                                           "MoveCartRelTRF(-20, 0, 0, 10, -10, 5)"));
+
+TEST(ProgramRun, SaysHowFarItIs) {
+  const auto program = test::program_of("Delay(0.1)\nDummy()", Dialect::kDocumented);
+  Jig jig;
+  ProgramRun run{program, {}};
+  std::string news;
+  for (int cycle = 0; cycle < 40; ++cycle) {
+    ASSERT_TRUE(jig.loop.cycle().has_value());
+    (void)run.step(jig.drive, jig.port.now(), jig.drive.take_events());
+    news += run.take_news() + ';';
+  }
+  EXPECT_THAT(news, HasSubstr("line 2: Delay(0.1);"));
+  EXPECT_THAT(news, HasSubstr("line 3: Dummy();"));
+}
+
+TEST(ProgramRun, EndsWithTheEmergencyStop) {
+  const auto program = test::program_of("Delay(2)", Dialect::kDocumented);
+  Jig jig;
+  ASSERT_TRUE(jig.loop.cycle().has_value());
+  jig.port.device().touch(jig.port.now() + 200ms,
+                          [](parol6::Plant& plant) { plant.inputs.estop = parol6::Level::kLow; });
+  ProgramRun run{program, {}};
+  const auto ending = jig.go_through(run);
+  ASSERT_TRUE(ending.has_value());
+  EXPECT_FALSE(ending->is_success);
+  EXPECT_THAT(ending->text, HasSubstr("emergency stop"));
+}
+
+/// That the next frame asks for.
+int gripper_position(Jig& jig) {
+  const auto frame = jig.drive.tick(jig.port.now());
+  return parol6::decode_command(parol6::body_of(frame)).gripper.position;
+}
+
+TEST(ProgramRun, LeavesTheGripperAloneUntilItIsNamed) {
+  const auto program =
+      test::program_of("Delay(0.05)\nGripper(200, 90, 400)\nDelay(0.2)", Dialect::kDocumented);
+  Jig jig;
+  ProgramRun run{program, {}};
+  ASSERT_TRUE(jig.go_through(run)->is_success);
+  EXPECT_EQ(gripper_position(jig), 200);
+  for (const auto dialect : {Dialect::kDocumented, Dialect::kCommander}) {
+    const auto quiet = test::program_of("Delay(0.05)", dialect);
+    Jig other;
+    ProgramRun quiet_run{quiet, {}};
+    ASSERT_TRUE(other.go_through(quiet_run)->is_success);
+    EXPECT_EQ(gripper_position(other), 0);
+  }
+}
+
+TEST(ProgramRun, ResultsKeepToTheirSchemaAndPlotsToWhatMoved) {
+  const auto program =
+      test::program_of("MoveJoint(10, 0, 0, 0, 0, 0, t=1)\nMoveJoint(0, 0, 0, 0, 0, 0, t=1, speed)",
+                       Dialect::kDocumented);
+  Jig jig;
+  ProgramRun run{program, {.planner = {.limits = parol6::LimitCheck::kIgnored}}};
+  run.keep_samples(1000);
+  ASSERT_TRUE(jig.go_through(run)->is_success);
+  const auto json = to_json(program, run,
+                            {.file = "a.rbt",
+                             .target = "emulated:",
+                             .ran_to_end = true,
+                             .position = jig.drive.telemetry()->position,
+                             .link = jig.drive.statistics()});
+  EXPECT_TRUE(armjig::test::is_valid_json(json, "docs/schemas/run.schema.json"));
+  EXPECT_EQ(results_table(program, run).rows.size(), 2U);
+  const auto plots = run_plots(run);
+  ASSERT_EQ(plots.position.series.size(), 1U);
+  EXPECT_EQ(plots.error.series.front().name, "j1");
+  EXPECT_NEAR(plots.position.series.front().points[99].y, 10, 0.1);
+}
+
+TEST(ProgramRun, NamesWhatItNeedsLeaveFor) {
+  EXPECT_THAT(hazards_of(test::program_of("Delay(1)", Dialect::kDocumented)), ::testing::IsEmpty());
+  EXPECT_THAT(hazards_of(test::program_of(
+                  "Output(1, LOW)\nGripper_cal()\nMoveJoint(0, -90, 180, 0, 0, 180)",
+                  Dialect::kDocumented)),
+              ::testing::UnorderedElementsAre(Hazard::kState, Hazard::kGrip, Hazard::kMove));
+}
+
+}  // namespace
+}  // namespace armjig::script
