@@ -15,7 +15,12 @@ struct Equivalent {
   std::string_view name;
   std::string_view reason;
 };
-constexpr std::array<Equivalent, 0> kEquivalents{};
+constexpr std::array kEquivalents{
+    Equivalent{"late:Unfolded", "how long an arm takes to unfold is not known"},
+    Equivalent{"late:Retracted", "how long an arm takes to fold is not known"},
+    Equivalent{"first-point:Handle", "its two points are too near for the time to tell"},
+    Equivalent{"bit-high:0", "a healthy server always sets bit 0"},
+};
 
 struct Hints {
   std::string_view section;

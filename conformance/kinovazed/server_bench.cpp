@@ -342,6 +342,12 @@ void ServerBench::expect_beat(int flags) {
   if (text != wanted) fail(behind(wanted), text);
 }
 
+std::size_t ServerBench::count_beats(Duration time) {
+  client().beats.clear();
+  pause(time);
+  return client().beats.size();
+}
+
 void ServerBench::wait_until_before_beat(Duration time) {
   (void)await_beat();
   pause(1s - time);
@@ -401,6 +407,7 @@ void ServerBench::drop_others() {
 
 bool ServerBench::is_alive() {
   drop_others();
+  if (std::exchange(is_spoiled_, false)) restart();
   const auto& one = client();
   if ((!one.is_connected || one.has_ended) && !connect_again(kRestartTime)) return false;
   return stop_all();
@@ -426,6 +433,11 @@ void ServerBench::restart() {
   mode_said_.reset();
 }
 
+/// For a server that does not stop.
+bool ServerBench::start_anew() {
+  return source_->touch("restart", 1) && connect_again(kRestartTime) && stop_all();
+}
+
 void ServerBench::bring_to(std::size_t start) {
   drop_others();
   start_ = static_cast<Start>(start);
@@ -435,7 +447,9 @@ void ServerBench::bring_to(std::size_t start) {
     if (!connect_again(kRestartTime)) return fail("a connection", "it is refused");
   }
   if (start_ == kFresh || is_over()) return;
-  if (!stop_all()) return fail_by_silence("Accepted (EStop)", silence_of(answer_time()));
+  if (!stop_all() && !start_anew()) {
+    return fail_by_silence("Accepted (EStop)", silence_of(answer_time()));
+  }
   if (start_ == kStopped) return;
   accept("QuitEStop");
   if (start_ == kOff) return;

@@ -101,6 +101,8 @@ class ServerBench final : public Bench {
   Heard await_beat();
   /// The next beat that cannot be from before now.
   void expect_beat(int flags);
+  /// Beats that come from now on, for so long.
+  [[nodiscard]] std::size_t count_beats(Duration time);
   /// Lets time pass until a beat is that far away.
   void wait_until_before_beat(Duration time);
 
@@ -156,6 +158,7 @@ class ServerBench final : public Bench {
   [[nodiscard]] bool stop_all();
   void drop_others();
   void restart();
+  [[nodiscard]] bool start_anew();
   void remember(std::string_view arrow, std::string_view text);
   [[nodiscard]] std::string behind(std::string text) const;
   [[nodiscard]] std::string silence_of(Duration time);

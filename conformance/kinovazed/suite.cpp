@@ -35,10 +35,10 @@ Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
 
 Suite suite() noexcept {
   static const std::array kChapters{
+      Chapter{"States", state_requirements(), state_cases()},
       Chapter{"Connections", connection_requirements(), connection_cases()},
       Chapter{"Lines", line_requirements(), line_cases()},
       Chapter{"Long lines and line feeds", long_line_requirements(), long_line_cases()},
-      Chapter{"States", state_requirements(), state_cases()},
       Chapter{"Replies and events", reply_requirements(), reply_cases()},
       Chapter{"Interrupts and ends", interrupt_requirements(), interrupt_cases()},
       Chapter{"Heartbeats", beat_requirements(), beat_cases()},

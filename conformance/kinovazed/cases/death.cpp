@@ -63,15 +63,18 @@ void ask_position(ServerBench& server) {
 
 void break_retract(ServerBench& server) {
   server.spoil(Recovery::kBySupervisor);
-  // Every second look at the arm's mode is that of Retract itself.
   server.touch("arm.fail.status_read", -1);
   server.say("Retract");
+  server.pause(150ms);
+  server.touch("arm.fail.status_read", 0);
 }
 
 void break_mode_release(ServerBench& server) {
   server.spoil(Recovery::kBySupervisor);
   server.touch("arm.fail.joystick_release", -1);
   server.say("SetJoystickMode:XYZ");
+  server.pause(150ms);
+  server.touch("arm.fail.joystick_release", 0);
 }
 
 void reset_waiting(ServerBench& server) {
@@ -89,7 +92,7 @@ void reset_waiting(ServerBench& server) {
 
 void reset_at_freeze(ServerBench& server) {
   server.spoil(Recovery::kByHand);
-  server.say("Freeze");
+  server.send("Freeze\r\nUnfreeze\r\n");
   server.throw_away();
   server.as(1);
   server.pause(300ms);

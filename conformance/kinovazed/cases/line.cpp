@@ -55,6 +55,7 @@ constexpr std::array kNoDigits{"MoveJoystick::0:0"sv,    "MoveJoystick:a:b:c"sv,
 template <const auto& lines>
 void not_understood(ServerBench& server) {
   for (const auto line : lines) server.not_understood(line);
+  server.expect_silence();
 }
 
 /// In emergencyStopped everything that is understood is `Rejected`, and EStop `Accepted`.
@@ -67,11 +68,13 @@ void stops(ServerBench& server) {
     server.expect(Event::kAccepted);
     server.expect_probe();
   }
+  server.expect_silence();
 }
 
 template <const auto& lines>
 void passed_over(ServerBench& server) {
   for (const auto line : lines) server.ignored(std::string{line} + "\r\n");
+  server.expect_silence();
 }
 
 template <const auto& lines>

@@ -13,6 +13,12 @@ using namespace std::chrono_literals;
 /// EStop with blanks in front, so many bytes without the LF.
 std::string padded(std::size_t size) { return std::string(size - 5, ' ') + "EStop"; }
 
+/// A command that every server understands, and refuses here.
+std::string long_move(std::size_t size) {
+  constexpr std::string_view kRest = "MoveJoystick::0:0";
+  return "MoveJoystick:" + std::string(size - kRest.size(), '0') + ":0:0";
+}
+
 std::string junk(std::size_t size) { return std::string(size, 'B'); }
 
 void padded_lines(ServerBench& server) {
@@ -46,6 +52,11 @@ void endless(ServerBench& server) {
   server.send(junk(600));
   server.expect_quiet(300ms);
   server.send(junk(552));
+  server.expect_end();
+}
+
+void too_long(ServerBench& server) {
+  server.send(padded(1152) + "\n");
   server.expect_end();
 }
 
@@ -89,7 +100,7 @@ void lf_boundary(ServerBench& server) {
 }
 
 void lf_boundary_harmless(ServerBench& server) {
-  server.send(junk(128) + "\nEStop\r\n");
+  server.send(long_move(128) + "\nEStop\r\n");
   server.expect(Event::kRejected);
   server.expect(Event::kAccepted);
 }
@@ -97,15 +108,15 @@ void lf_boundary_harmless(ServerBench& server) {
 void beside_boundary(ServerBench& server) {
   for (const std::size_t size : {127U, 129U}) {
     server.about("the command behind one of " + std::to_string(size) + " bytes");
-    server.send(junk(size) + "\nEStop\r\n");
-    if (server.is_documented()) server.expect(Event::kRejected);
+    server.send(long_move(size) + "\nEStop\r\n");
+    server.expect(Event::kRejected);
     server.expect(Event::kAccepted);
   }
 }
 
 void boundary_alone(ServerBench& server) {
-  server.send(junk(128) + "\n");
-  if (server.is_documented()) server.expect(Event::kRejected);
+  server.send(long_move(128) + "\n");
+  server.expect(Event::kRejected);
   server.pause(200ms);
   server.send("EStop\r\n");
   server.expect(Event::kAccepted);
@@ -161,6 +172,9 @@ constexpr Case kCases[] = {
     {.requirement = "kinovazed.line.endless",
      .rule = "600 bytes without LF wait, 552 more close.",
      .run = on<endless>},
+    {.requirement = "kinovazed.line.too-long",
+     .rule = "EStop in 1153 bytes with its LF closes.",
+     .run = on<too_long>},
     {.requirement = "kinovazed.line.behind-endless",
      .rule = "The client behind one that was closed is answered at once.",
      .run = on<behind_endless>},

@@ -65,10 +65,11 @@ void reached(ServerBench& server) {
 }
 
 /// The two way-points are 2 rad apart; no arm turns faster than 2.5 rad/s.
+template <Objective objective>
 void all_points(ServerBench& server) {
-  run(server, "Antenna");
+  run(server, to_string(objective));
   server.about("to the first point and back to the second");
-  expect_time(server, time_of(server, "Antenna"), 1300ms, 2 * ServerBench::kMotionTime);
+  expect_time(server, time_of(server, to_string(objective)), 1300ms, 2 * ServerBench::kMotionTime);
 }
 
 void one_word(ServerBench& server) {
@@ -127,7 +128,13 @@ constexpr Case kCases[] = {
     in(kIdle, "kinovazed.objective.reached", "A second Home takes less than half a second.",
        on<reached>),
     in(kIdle, "kinovazed.objective.all-points", "A second Antenna takes more than 1.3 s.",
-       on<all_points>),
+       on<all_points<Objective::kAntenna>>),
+    in(kIdle, "kinovazed.objective.all-points-of-bottles",
+       "A second FindBottle takes more than 1.3 s.", on<all_points<Objective::kFindBottle>>,
+       "find"),
+    in(kIdle, "kinovazed.objective.all-points-of-bottles",
+       "A second PlaceBottle takes more than 1.3 s.", on<all_points<Objective::kPlaceBottle>>,
+       "place"),
     in(kIdle, "kinovazed.objective.one-word", "One ObjectiveDone for the two points of Handle.",
        on<one_word>),
     in(kSteering, "kinovazed.objective.ends-idle", "ObjectiveDone, and beat 21.", on<ends_idle>),

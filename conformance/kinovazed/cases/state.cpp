@@ -187,6 +187,26 @@ void running_objective(ServerBench& server) {
 }
 
 constexpr Case kCases[] = {
+    // First, for without EStop no other case can begin.
+    in(kEmergencyStopped, "kinovazed.state.stopped.estop", "Accepted, and beat 3.",
+       on<stopped_estop>),
+    in(kPoweredOff, "kinovazed.state.off.estop", "Accepted, and beat 3.", on<estop<kPoweredOff>>),
+    in(kInitializing, "kinovazed.state.initializing.estop", "Accepted, and beat 3.",
+       on<estop<kInitializing>>),
+    in(kIdle, "kinovazed.state.idle.estop", "Accepted, and beat 3.", on<estop<kIdle>>),
+    in(kRetracting, "kinovazed.state.retracting.estop", "Accepted, and beat 3.",
+       on<estop<kRetracting>>),
+    in(kRetracted, "kinovazed.state.retracted.estop", "Accepted, and beat 3.",
+       on<estop<kRetracted>>),
+    in(kUnfolding, "kinovazed.state.unfolding.estop", "Accepted, and beat 3.",
+       on<estop<kUnfolding>>),
+    in(kSettingMode, "kinovazed.state.setting-mode.estop", "Accepted, and beat 3.",
+       on<estop<kSettingMode>>),
+    in(kSteering, "kinovazed.state.steering.estop", "Accepted, and beat 3.", on<estop<kSteering>>),
+    in(kRunningSequence, "kinovazed.state.running.estop", "Accepted, and beat 3.",
+       on<estop<kRunningSequence>>),
+    in(kFrozen, "kinovazed.state.frozen.estop", "Accepted, and beat 3.", on<estop<kFrozen>>),
+
     {.requirement = "kinovazed.state.start",
      .rule = "The first beat of a fresh server says emergencyStopped.",
      .run = on<start>,
@@ -194,8 +214,6 @@ constexpr Case kCases[] = {
     in(kEmergencyStopped, "kinovazed.state.table",
        "All modes and objectives are Rejected in emergencyStopped.", on<table>),
 
-    in(kEmergencyStopped, "kinovazed.state.stopped.estop", "Accepted, and beat 3.",
-       on<stopped_estop>),
     {.requirement = "kinovazed.state.stopped.quit-estop",
      .rule = "Accepted, and beat 1.",
      .run = on<stopped_quit>,
@@ -203,7 +221,6 @@ constexpr Case kCases[] = {
     in(kEmergencyStopped, "kinovazed.state.stopped.refused", "Eight commands, and beat 3.",
        on<refused<kEmergencyStopped, kAllButStops>>),
 
-    in(kPoweredOff, "kinovazed.state.off.estop", "Accepted, and beat 3.", on<estop<kPoweredOff>>),
     in(kPoweredOff, "kinovazed.state.off.quit-estop", "Accepted, and beat 1.", on<off_quit>),
     {.requirement = "kinovazed.state.off.initialize",
      .rule = "Initialized, and beat 21.",
@@ -213,12 +230,9 @@ constexpr Case kCases[] = {
     in(kPoweredOff, "kinovazed.state.off.refused", "Seven commands, and beat 1.",
        on<refused<kPoweredOff, kAllButInitialize>>),
 
-    in(kInitializing, "kinovazed.state.initializing.estop", "Accepted, and beat 3.",
-       on<estop<kInitializing>>),
     in(kInitializing, "kinovazed.state.initializing.refused", "Nine commands, then Initialized.",
        on<refused_until<kInitializing, kAllButEStop, Event::kInitialized>>),
 
-    in(kIdle, "kinovazed.state.idle.estop", "Accepted, and beat 3.", on<estop<kIdle>>),
     in(kIdle, "kinovazed.state.idle.initialize", "Initialized, and beat 21.", on<initialize>),
     in(kIdle, "kinovazed.state.idle.retract", "Beat 5, then Retracted.", on<retract>),
     in(kIdle, "kinovazed.state.idle.freeze", "Freezed, and beat 13.", on<freeze>),
@@ -227,31 +241,22 @@ constexpr Case kCases[] = {
     in(kIdle, "kinovazed.state.idle.refused", "Four commands, and beat 21.",
        on<refused<kIdle, kNotInIdle>>),
 
-    in(kRetracting, "kinovazed.state.retracting.estop", "Accepted, and beat 3.",
-       on<estop<kRetracting>>),
     in(kRetracting, "kinovazed.state.retracting.refused", "Nine commands, then Retracted.",
        on<refused_until<kRetracting, kAllButEStop, Event::kRetracted>>),
 
-    in(kRetracted, "kinovazed.state.retracted.estop", "Accepted, and beat 3.",
-       on<estop<kRetracted>>),
     in(kRetracted, "kinovazed.state.retracted.unfold", "Beat 5, then Unfolded.", on<unfold>),
     in(kRetracted, "kinovazed.state.retracted.refused", "Seven commands, and beat 133.",
        on<refused<kRetracted, kNotInRetracted>>),
 
-    in(kUnfolding, "kinovazed.state.unfolding.estop", "Accepted, and beat 3.",
-       on<estop<kUnfolding>>),
     in(kUnfolding, "kinovazed.state.unfolding.refused", "Nine commands, then Unfolded.",
        on<refused_until<kUnfolding, kAllButEStop, Event::kUnfolded>>),
 
-    in(kSettingMode, "kinovazed.state.setting-mode.estop", "Accepted, and beat 3.",
-       on<estop<kSettingMode>>),
     in(kSettingMode, "kinovazed.state.setting-mode.retract", "Beat 5, then Retracted.",
        on<setting_mode_retract>),
     in(kSettingMode, "kinovazed.state.setting-mode.refused",
        "Eight commands, then JoystickModeSet.",
        on<refused_until<kSettingMode, kNotInSettingMode, Event::kJoystickModeSet>>),
 
-    in(kSteering, "kinovazed.state.steering.estop", "Accepted, and beat 3.", on<estop<kSteering>>),
     in(kSteering, "kinovazed.state.steering.freeze", "Freezed, and beat 13.", on<freeze>),
     in(kSteering, "kinovazed.state.steering.mode", "Beat 5, then JoystickModeSet.", on<mode>),
     in(kSteering, "kinovazed.state.steering.move", "Three moves are Accepted, and beat 69.",
@@ -261,8 +266,6 @@ constexpr Case kCases[] = {
     in(kSteering, "kinovazed.state.steering.refused", "Five commands, and beat 69.",
        on<refused<kSteering, kNotInSteering>>),
 
-    in(kRunningSequence, "kinovazed.state.running.estop", "Accepted, and beat 3.",
-       on<estop<kRunningSequence>>),
     in(kRunningSequence, "kinovazed.state.running.mode", "Beat 5, then JoystickModeSet.",
        on<running_mode>),
     in(kRunningSequence, "kinovazed.state.running.objective", "Beat 37, then ObjectiveDone.",
@@ -270,7 +273,6 @@ constexpr Case kCases[] = {
     in(kRunningSequence, "kinovazed.state.running.refused", "Seven commands, then ObjectiveDone.",
        on<refused_until<kRunningSequence, kNotInRunning, Event::kObjectiveDone>>),
 
-    in(kFrozen, "kinovazed.state.frozen.estop", "Accepted, and beat 3.", on<estop<kFrozen>>),
     in(kFrozen, "kinovazed.state.frozen.unfreeze", "Unfreezed, and beat 21.", on<unfreeze>),
     in(kFrozen, "kinovazed.state.frozen.refused", "Seven commands, and beat 13.",
        on<refused<kFrozen, kNotInFrozen>>),

@@ -7,6 +7,8 @@ namespace {
 constexpr Requirement kRequirements[] = {
     {"kinovazed.beat.period", Level::kMust, "The next heartbeat comes 1 s after the one before.",
      "server, recording heartbeat-period"},
+    {"kinovazed.beat.single", Level::kMust, "There is one heartbeat in each second, and no other.",
+     "server, recording heartbeat-period"},
     {"kinovazed.beat.values", Level::kMust,
      "Whatever happens, a heartbeat is one of 1, 3, 5, 13, 21, 37, 69 and 133.",
      "document; server; reference 7"},

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
 #include <utility>
 
 namespace armjig::kinovazed {
@@ -39,8 +40,11 @@ constexpr std::array kFigures{
     Named<Spoil>{"reach-3-rad", [](Behaviour& b) { b.reach.radians = 3; }},
     Named<Spoil>{"stick-dead", [](Behaviour& b) { b.units_per_full = 0; }},
     Named<Spoil>{"stick-weak", [](Behaviour& b) { b.units_per_full /= 4; }},
-    Named<Spoil>{"objectives-7", [](Behaviour& b) { b.objective_count = 7; }},
-    Named<Spoil>{"objectives-9", [](Behaviour& b) { b.objective_count = 9; }}};
+    Named<Spoil>{"objectives-other", [](Behaviour& b) {
+                   b.objective_count = b.objective_count == kDocumentedObjectives
+                                           ? kObjectiveNames.size()
+                                           : kDocumentedObjectives;
+                 }}};
 
 template <class Table>
 auto* find_named(const Table& table, std::string_view name) {
@@ -257,7 +261,10 @@ void list_messages(std::vector<NamedFault>& all) {
 }
 
 void list_words(std::vector<NamedFault>& all) {
-  for (const auto word : kVerbNames) all.push_back({fmt::format("deaf:{}", word), "Lines"});
+  // A console command that is not known is as silent as one that is.
+  for (const auto word : std::span{kVerbNames}.first<kMachineVerbs>()) {
+    all.push_back({fmt::format("deaf:{}", word), "Lines"});
+  }
   for (const auto word : kModeNames) all.push_back({fmt::format("deaf:{}", word), "Joystick"});
   for (const auto word : kObjectiveNames) {
     all.push_back({fmt::format("deaf:{}", word), "Objectives"});

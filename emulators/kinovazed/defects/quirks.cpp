@@ -2,6 +2,7 @@
 #include "emulators/kinovazed/defects/quirks.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace armjig::kinovazed {
@@ -222,7 +223,7 @@ void add_ears(std::vector<Quirk>& all) {
   all.push_back(mistake("takes-too-large", "Lines", ":2147483648", ":1"));
   all.push_back(mistake("takes-too-small", "Lines", "-2147483649", "1"));
   all.push_back(mistake("takes-empty-for-zero", "Lines", "MoveJoystick::", "MoveJoystick:0:"));
-  all.push_back(mistake("takes-letters-for-zero", "Lines", ":a", ":0"));
+  all.push_back(mistake("takes-letters-for-zero", "Lines", ":a:b:c", ":0:0:0"));
   all.push_back(mistake("takes-signs-for-zero", "Lines", ":-:", ":0:"));
   all.push_back(ears("short-lines", "Lines", [](std::string& segment) {
     each_line(segment, [](std::string& line) {
@@ -249,6 +250,14 @@ void add_ears(std::vector<Quirk>& all) {
   all.push_back(ears("lf-takes-next-always", "Lines", [](std::string& segment) {
     if (segment.starts_with("\r\n") && segment.size() > 3) segment.erase(0, 3);
   }));
+  all.push_back(ears("answers-empty-lines", "Lines", [](std::string& segment) {
+    if (segment == "\r\n") segment = "MoveJoystick:0:0:0\r\n";
+  }));
+  Quirk hungry{.name = "lf-takes-next-segment", .section = "Lines"};
+  hungry.hear = [](std::string& segment, QuirkMemory& memory, State) {
+    if (std::exchange(memory.number, segment == "\n" ? 1 : 0) == 1) segment.erase(0, 1);
+  };
+  all.push_back(std::move(hungry));
   all.push_back(ears("console-commands-act", "Commands", [](std::string& segment) {
     replace_all(segment, "GetAbsolutePosition\r\n", "MoveJoystick:0:0:0\r\n");
   }));
@@ -272,6 +281,12 @@ void add_manners(std::vector<Quirk>& all) {
                    if (clients >= from) greeting = text;
                  }};
   };
+  Quirk reserved{.name = "serves-three-clients", .section = "Connections"};
+  reserved.come = [](std::string&, QuirkMemory& memory, std::size_t) { ++memory.number; };
+  reserved.say = [](Saying& saying, QuirkMemory& memory, State) {
+    if (memory.number > 3) saying.text.clear();
+  };
+  all.push_back(std::move(reserved));
   all.push_back(greets("greets", "Accepted\r\n", 1));
   all.push_back(greets("beats-at-once", "Heartbeat:3\r\n", 1));
   all.push_back(greets("tells-that-it-is-busy", "Rejected\r\n", 2));
