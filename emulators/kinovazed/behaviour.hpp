@@ -42,7 +42,7 @@ struct Behaviour {
   bool shares_objective{};
   /// kinovazed.retract.while-initializing: an arm that ends folded leaves the server stuck.
   bool sticks_when_folded{};
-  /// kinovazed.death: some failures hang, end or mute the server.
+  /// "Deaths": some failures hang, end or mute the server.
   bool dies{};
   std::size_t objective_count{};  ///< the first so many of `Objective` are known
 

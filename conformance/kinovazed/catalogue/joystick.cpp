@@ -43,7 +43,8 @@ constexpr Requirement kRequirements[] = {
      "server; reference 8.1", Profiles::kBoth, "", Role::kDevice,
      "no message tells where the arm is or how fast"},
     {"kinovazed.joystick.bounds", Level::kMust,
-     "x or y that leads beyond 0.79 or 0.84 m counts as 0, in every mode, by the last pose "
+     "A deflection in x or y that leads beyond 0.79 or 0.84 m counts as 0, in every mode, by the "
+     "last pose "
      "inside the workspace; the reply stays Accepted.",
      "server, transcript S17", Profiles::kBoth, "", Role::kDevice,
      "no message tells where the arm is"},

@@ -35,7 +35,7 @@ constexpr Requirement kRequirements[] = {
     {"kinovazed.line.lf-harmless", Level::kMust, "An LF in front of a command costs nothing.",
      kChoice, Profiles::kDocumented, "kinovazed.line.lf-first"},
     {"kinovazed.line.lf-boundary", Level::kMust,
-     "So does the LF behind a line of 128 bytes, if the next command is read with it.",
+     "The LF behind a line of 128 bytes takes the byte behind it along, if that was read with it.",
      "server; reference 2.12", Profiles::kFirmware, "kinovazed.line.lf-boundary-harmless"},
     {"kinovazed.line.lf-boundary-harmless", Level::kMust,
      "A line of 128 bytes costs the next command nothing.", kChoice, Profiles::kDocumented,
