@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "conformance/demo/mutants.hpp"
+#include "conformance/morap/mutants.hpp"
 #include "conformance/parol6/mutants.hpp"
 #include "conformance/selection.hpp"
 #include "harness/core/version.hpp"
@@ -269,6 +270,7 @@ ReportSection rates_of(const MutationResult& result) {
 
 constexpr std::array kMutants{
     MutantsEntry{"demo", demo::all_mutants, demo::mutant_hints},
+    MutantsEntry{"morap", morap::all_mutants, morap::mutant_hints},
     MutantsEntry{"parol6", parol6::all_mutants, parol6::mutant_hints},
 };
 
