@@ -17,6 +17,12 @@ struct Equivalent {
 };
 constexpr auto kEquivalents = std::to_array<Equivalent>({
     {"eeprom:inductance", "it is stored and never used"},
+    {"in:off-by-one:voltage.value", "the last bit of a voltage is less than a level"},
+    {"in:off-by-one:torque.value", "the last bit of a torque is less than a level"},
+    {"in:off-by-one:calibrate_angle.value", "the last bit of an angle is less than a count"},
+    {"row:needs-calibration.disable.forget", "both take the mode away, and nothing else is left"},
+    {"row:needs-calibration.calibration_unknown.disable",
+     "both take the mode away, and nothing else is left"},
 });
 
 struct Hints {

@@ -214,28 +214,33 @@ void NodeBench::power_up(std::int64_t shaft) {
   next_tick_ = now() + (instant_of(tick_period(kIdleRate)) - Instant{});
 }
 
+/// What is not acknowledged here is for the cases to find.
+void NodeBench::prepare(const Command& command) {
+  if (!is_deaf()) std::ignore = write(subject_.address, encode(command));
+}
+
 void NodeBench::bring_to(std::size_t start) {
   if (start == kListening) return;
   if (start == kFresh) return power_up(0);
   if (start == kFree) {
     if (!subject_.is_free) power_up(1);
-    send(kCalibrationUnknown);
-    send(kDefaultControllers);
+    prepare(kCalibrationUnknown);
+    prepare(kDefaultControllers);
     settle();
-    return send(kCalibrateZero);
+    return prepare(kCalibrateZero);
   }
   if (start == kProgrammable) keep_sets();
-  send(kCalibrationUnknown);
+  prepare(kCalibrationUnknown);
   // Before any mode is entered: what cases leave behind must never run.
-  if (!kept_sets_[0].empty() || start == kProgrammable) send(kDefaultControllers);
+  if (!kept_sets_[0].empty() || start == kProgrammable) prepare(kDefaultControllers);
   settle();
-  send(kPosition, 0.0F);
-  send(kSpeed, 0.0F);
-  send(kVoltage, 0.0F);
-  send(kCalibrationUnknown);
+  prepare(kPosition, 0.0F);
+  prepare(kSpeed, 0.0F);
+  prepare(kVoltage, 0.0F);
+  prepare(kCalibrationUnknown);
   settle();
   rest();
-  if (start != kUncalibrated) send(kCalibrateZero);
+  if (start != kUncalibrated) prepare(kCalibrateZero);
 }
 
 /// A shaft that was driven before comes to rest.

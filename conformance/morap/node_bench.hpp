@@ -108,6 +108,9 @@ class NodeBench final : public BusBench {
   void find_motor();
   void keep_sets();
   void put_sets_back();
+  void prepare(const Command& command);
+  void prepare(CommandId id) { prepare(Command{id}); }
+  void prepare(CommandId id, float value) { prepare(Command{id, value}); }
   void rest();
   void power_up(std::int64_t shaft);
 

@@ -13,15 +13,11 @@ namespace {
 using namespace std::chrono_literals;
 using enum CommandId;
 
-void poke(NodeBench& node) { node.send_bytes(""); }
-
 void poke_is_harmless(NodeBench& node) {
   node.send(kReadMotorStatus);
   node.send_bytes("");
   node.expect_read_on("03");
 }
-
-void read_address(NodeBench& node) { std::ignore = node.read_on(1); }
 
 void reserved(NodeBench& node) {
   for (std::uint8_t address = 0x78; address < 0x80; ++address) node.expect_absent({address});
@@ -128,13 +124,11 @@ void write_wraps(NodeBench& node) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "morap.bus.poke", .rule = "A write of nothing.", .run = on<poke>},
     {.requirement = "morap.bus.poke-harmless",
      .rule = "The chosen status is still read behind it.",
      .run = on<poke_is_harmless>,
      .hazard = Hazard::kState,
      .start = kUncalibrated},
-    {.requirement = "morap.bus.read-address", .rule = "One byte is read.", .run = on<read_address>},
     {.requirement = "morap.bus.reserved", .rule = "All of them are asked.", .run = on<reserved>},
     {.requirement = "morap.bus.general-call", .rule = "00 is asked.", .run = on<general_call>},
     {.requirement = "morap.bus.other-node",

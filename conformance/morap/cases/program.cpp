@@ -272,6 +272,17 @@ void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
 void defaults_position(NodeBench& node) { expect_back(node, kReadPositionSet, good()); }
 void defaults_speed(NodeBench& node) { expect_back(node, kReadSpeedSet, kSpeedSet); }
 
+void defaults_while_enabled(NodeBench& node) {
+  const auto before = node.read(kReadPositionSet, 31);
+  program(node, good());
+  node.settle();
+  node.send(kVoltage, 0.0F);
+  node.send(kDefaultControllers);
+  node.settle();
+  node.send(kDisable);
+  node.expect_same(node.read(kReadPositionSet, 31), before);
+}
+
 void defaults_at_tick(NodeBench& node) {
   const auto before = node.read(kReadPositionSet, 4);
   program(node, "00 C8 00 00 00 00 00 00 00 00", " 37");
@@ -334,6 +345,8 @@ constexpr Case kCases[] = {
     programming("morap.defaults.status", "Behind a success.", on<defaults_status>),
     programming("morap.defaults.position", "Programmed and loaded.", on<defaults_position>),
     programming("morap.defaults.speed", "Programmed and loaded.", on<defaults_speed>),
+    programming("morap.defaults.while-enabled", "Programmed, then 0 V, then loaded.",
+                on<defaults_while_enabled>),
     programming("morap.defaults.at-tick", "Read before and behind the tick.", on<defaults_at_tick>,
                 kFresh),
 };

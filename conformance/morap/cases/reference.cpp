@@ -88,8 +88,7 @@ void short_mode(NodeBench& node) {
 void short_joined(NodeBench& node) {
   node.send(kPosition, 1.0F);
   node.send_bytes("01 00 00");
-  node.send_bytes("00 3F");
-  node.send_bytes("01 00");
+  node.send_bytes("02 3F");
   node.expect_number(kReadPositionReference, 1.0F);
 }
 
@@ -157,6 +156,27 @@ void while_disabled(NodeBench& node) {
   node.expect_bytes(kReadAngle, node.motor().thousand_counts);
 }
 
+void over_disable(NodeBench& node) {
+  node.send(kCalibrateZero);
+  node.turn(1000);
+  node.send(kDisable);
+  node.expect_bytes(kReadAngle, node.motor().thousand_counts);
+}
+
+void zero_while_enabled(NodeBench& node) {
+  node.send(kCalibrateAngle, 1.0F);
+  node.send(kVoltage, 0.0F);
+  node.send(kCalibrateZero);
+  node.expect_number(kReadAngle, 0.0F);
+}
+
+void angle_while_enabled(NodeBench& node) {
+  node.send(kCalibrateZero);
+  node.send(kVoltage, 0.0F);
+  node.send(kCalibrateAngle, 1.0F);
+  node.expect_near(kReadAngle, 1.0, kCount);
+}
+
 void over_forgetting(NodeBench& node) {
   node.turn(1000);
   node.send(kCalibrationUnknown);
@@ -190,8 +210,8 @@ constexpr Case kCases[] = {
           kUncalibrated),
     state("morap.write.short-float", "Cut at every byte.", on<short_float>, kUncalibrated),
     state("morap.write.short-mode", "Cut references of all kinds.", on<short_mode>, kDisabled),
-    state("morap.write.short-joined", "One reference in three writes.", on<short_joined>,
-          kUncalibrated),
+    state("morap.write.short-joined", "The second write would complete the first.",
+          on<short_joined>, kUncalibrated),
     state("morap.write.payload-no-command", "31 behind 0 and behind 16.", on<payload_no_command>,
           kDisabled),
     state("morap.calibrate.zero", "To 1 rad, then to 0.", on<zero>, kUncalibrated),
@@ -205,6 +225,11 @@ constexpr Case kCases[] = {
     state("morap.angle.uncalibrated", "A thousand counts before any calibration.", on<uncalibrated>,
           kFresh),
     state("morap.angle.disabled", "A thousand counts while disabled.", on<while_disabled>, kFresh),
+    state("morap.angle.over-disable", "A thousand counts, then 0.", on<over_disable>, kFresh),
+    state("morap.calibrate.zero-while-enabled", "0 V on a held shaft, then 16.",
+          on<zero_while_enabled>, kFresh),
+    state("morap.calibrate.angle-while-enabled", "0 V on a held shaft, then 17.",
+          on<angle_while_enabled>, kFresh),
     state("morap.angle.over-forgetting", "A thousand counts, then 31.", on<over_forgetting>,
           kFresh),
 };

@@ -84,8 +84,9 @@ void latched(NodeBench& node) {
   node.send(kCalibrationUnknown);
 }
 
+template <CommandId reference>
 void runs_with_calibration(NodeBench& node) {
-  node.send(kVoltage, 0.0F);
+  node.send(reference, 0.0F);
   node.send(kCalibrateZero);
   node.expect_status(kEnabled);
   node.send(kDisable);
@@ -99,6 +100,7 @@ void disable_unlatches(NodeBench& node) {
 }
 
 void calibration_while_enabled(NodeBench& node) {
+  node.send(kCalibrateZero);
   node.send(kVoltage, 0.0F);
   node.send(kCalibrateZero);
   node.expect_status(kEnabled);
@@ -241,7 +243,11 @@ constexpr Case kCases[] = {
           kCalibrated),
     state("morap.status.latched", "References of all documented kinds.", on<latched>,
           kUncalibrated),
-    state("morap.status.runs-with-calibration", "0 V, then 16.", on<runs_with_calibration>,
+    state("morap.status.runs-with-calibration", "0 V, then 16.",
+          on<runs_with_calibration<kVoltage>>, kUncalibrated),
+    state("morap.status.runs-with-direct-voltage", "Direct 0 V, then 16.",
+          on<runs_with_calibration<kDirectVoltage>>, kUncalibrated),
+    state("morap.status.runs-with-torque", "0 N m, then 16.", on<runs_with_calibration<kTorque>>,
           kUncalibrated),
     state("morap.status.disable-unlatches", "0 V, 0, 16.", on<disable_unlatches>, kUncalibrated),
     state("morap.status.calibration-while-enabled", "0 V, 16, 17, on a held shaft.",

@@ -5,13 +5,8 @@ namespace armjig::morap {
 namespace {
 
 constexpr Requirement kRequirements[] = {
-    {"morap.bus.poke", Level::kMust,
-     "A node acknowledges its address also when nothing is written behind it.",
-     "document, poke; firmware"},
     {"morap.bus.poke-harmless", Level::kMust, "A write of nothing changes nothing.",
      "firmware, vector 24"},
-    {"morap.bus.read-address", Level::kMust, "A node acknowledges its address for a read.",
-     "document, reading"},
     {"morap.bus.reserved", Level::kMust, "A node acknowledges no reserved address, 78 to 7F.",
      "I2C; firmware: one address"},
     {"morap.bus.general-call", Level::kMust, "A node does not acknowledge the general call.",

@@ -55,6 +55,12 @@ constexpr Requirement kRequirements[] = {
      "vector 12"},
     {"morap.angle.disabled", Level::kMust, "Counting goes on while the node is disabled.",
      "firmware, encoder"},
+    {"morap.angle.over-disable", Level::kMust, "Disabling keeps the angle as it is.",
+     "firmware, identifier 0"},
+    {"morap.calibrate.zero-while-enabled", Level::kMust,
+     "An enabled node is calibrated to 0 as well.", "recording loop-calibrate-moving"},
+    {"morap.calibrate.angle-while-enabled", Level::kMust,
+     "An enabled node is calibrated to an angle as well.", "recording loop-calibrate-moving"},
     {"morap.angle.over-forgetting", Level::kMust,
      "Forgetting the calibration keeps the angle as it is.", "firmware, identifier 31"},
 };

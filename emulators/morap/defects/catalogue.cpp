@@ -197,6 +197,12 @@ std::vector<std::string> fields_of(Payload payload) {
   return {"kind", "rate", "d.0", "d.1", "c.0", "c.1", "f.0", "integral"};
 }
 
+bool is_byte(std::string_view field) noexcept {
+  const auto reading = std::ranges::find(readings(), field, &ReadInfo::name);
+  const bool is_byte_reading = reading != readings().end() && reading->kind == ReadKind::kByte;
+  return field == "kind" || field == "checksum" || is_byte_reading;
+}
+
 class List {
  public:
   template <class Table>
@@ -207,6 +213,7 @@ class List {
                   const std::vector<std::string>& fields, std::string_view section) {
     for (const auto& field : fields) {
       for (const auto& kind : kFieldKinds) {
+        if (kind.meaning == Fault::Kind::kSwapBytes && is_byte(field)) continue;
         add({word, ":", kind.name, ":", message, ".", field}, section);
       }
     }
@@ -219,7 +226,9 @@ class List {
         "program",        "default_controllers"};
     for (const auto& status : kStatuses) {
       for (const auto command : kCommands) {
+        const auto id = find_named(commands(), command)->id;
         for (const auto& action : kActions) {
+          if (action.meaning == id) continue;
           add({"row:", status.name, ".", command, ".", action.name}, "Status");
         }
       }
