@@ -14,6 +14,7 @@
 
 #include "conformance/demo/mutants.hpp"
 #include "conformance/kinovazed/mutants.hpp"
+#include "conformance/morap/mutants.hpp"
 #include "conformance/parol6/mutants.hpp"
 #include "conformance/selection.hpp"
 #include "harness/core/version.hpp"
@@ -271,6 +272,7 @@ ReportSection rates_of(const MutationResult& result) {
 constexpr std::array kMutants{
     MutantsEntry{"demo", demo::all_mutants, demo::mutant_hints},
     MutantsEntry{"kinovazed", kinovazed::all_mutants, kinovazed::mutant_hints},
+    MutantsEntry{"morap", morap::all_mutants, morap::mutant_hints},
     MutantsEntry{"parol6", parol6::all_mutants, parol6::mutant_hints},
 };
 
