@@ -7,15 +7,17 @@
 #include <utility>
 
 #include "harness/rig/demo_judge.hpp"
+#include "harness/rig/kinovazed_judge.hpp"
 #include "harness/rig/parol6_judge.hpp"
 
 namespace armjig {
 namespace {
 
-constexpr std::array<std::string_view, kHazardCount> kHazards{"observe", "state", "move", "home",
-                                                              "grip"};
+constexpr std::array<std::string_view, kHazardCount> kHazards{"observe", "state",   "move", "home",
+                                                              "grip",    "program", "crash"};
 constexpr std::array kJudges{
     JudgeEntry{"demo", demo::make_judge},
+    JudgeEntry{"kinovazed", kinovazed::make_judge},
     JudgeEntry{"parol6", parol6::make_judge},
 };
 /// The stop leaves until the device shows that it heard it, but not more often than that.
@@ -44,7 +46,8 @@ Outcome<Permissions> parse_permissions(std::string_view text) {
     const auto found = std::ranges::find(kHazards, word);
     if (found == kHazards.end()) {
       return problem(ErrorCode::kBadValue, "--allow " + std::string{text},
-                     "choose from state, move, home, grip with commas between them, or all");
+                     "choose from state, move, home, grip, program, crash with commas between "
+                     "them, or all");
     }
     permissions.add(static_cast<Hazard>(found - kHazards.begin()));
     rest = end == std::string_view::npos ? "" : rest.substr(end + 1);

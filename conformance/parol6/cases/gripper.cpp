@@ -247,7 +247,8 @@ void speed_map(BoardBench& board) {
     board.act(frame);
     const auto before = board.act(frame);
     const auto after = board.keep_asking(frame, 300ms);
-    const auto rate = (speed * 79'960 / 255 + 40) * 255.0 / 10'558;  // bytes/s
+    const auto steps_per_second = speed * 79'960 / 255 + 40;
+    const auto rate = steps_per_second * 255.0 / 10'558;  // bytes/s
     const auto seconds = [](Duration time) { return std::chrono::duration<double>(time).count(); };
     // Each answer is as old as the frame before it at most.
     const auto shortest = seconds(after.asked - before.received) - 0.02;
