@@ -5,6 +5,7 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -124,6 +125,24 @@ std::string command_of(const Options& options) {
   return text;
 }
 
+/// What was not run has one line, for it may be most of a suite.
+std::string line_of(const ReportRow& row) {
+  if (row.verdict != Verdict::kSkipped) return to_text(row);
+  return fmt::format("SKIPPED   {:<36} {}\n", row.name, row.actual);
+}
+
+/// In one line what was not run, and why; nothing if everything was.
+void print_skipped(const Report& result) {
+  std::map<std::string, int> reasons;
+  for (const auto& row : result.rows) {
+    if (row.verdict == Verdict::kSkipped) ++reasons[row.actual];
+  }
+  if (reasons.empty()) return;
+  std::string text;
+  for (const auto& [reason, count] : reasons) text += fmt::format("; {} {}", count, reason);
+  fmt::print("skipped: {}\n", text.substr(2));
+}
+
 Exit run(const Suite& suite, Options options) {
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
@@ -138,12 +157,13 @@ Exit run(const Suite& suite, Options options) {
   options.run.command = command_of(options);
   const auto started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   auto result = run_suite(suite, **bench, options.run, [](const ReportRow& row) {
-    fmt::print("{}", to_text(row));
+    fmt::print("{}", line_of(row));
     std::fflush(stdout);
   });
   result.started = started;
   if (how->impairment) result.facts.emplace_back("impairment", to_string(*how->impairment));
   fmt::print("{}\n", counts_line(result));
+  print_skipped(result);
   if (const auto written = write_files(result, options.files); !written) {
     return report(written.error());
   }
@@ -164,8 +184,10 @@ Exit conformance(Options options) {
   if (!options.explain.empty()) return explain(*suite, options.explain);
   if (options.list) return list_requirements(*suite, options);
   if (select(*suite, options.run.profile, options.run.selection).empty()) {
-    (void)report({ErrorCode::kBadValue, "--filter " + options.run.selection.filter,
-                  "no case is selected; --list shows the requirements"});
+    const auto& filter = options.run.selection.filter;
+    (void)report({ErrorCode::kBadValue,
+                  filter.empty() ? "--shard " + options.shard : "--filter " + filter,
+                  "it selects no case of this profile and tier; --list shows the requirements"});
     return Exit::kNothing;
   }
   return run(*suite, std::move(options));

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/parol6_view.hpp"
+#include "harness/drive/parol6/tool_jog.hpp"
 #include "harness/rig/parol6_judge.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
@@ -64,7 +65,6 @@ std::span<const Parol6Console::Row> Parol6Console::rows() noexcept {
   using Self = Parol6Console;
   constexpr auto kAlways = When::kAlways;
   constexpr auto kAlone = When::kAlone;
-  static constexpr std::string_view kJointWords = "j1 j2 j3 j4 j5 j6";
   static constexpr std::array kRows{
       Row{"help", "[COMMAND]", "what there is", kAlways, &Self::help, ""},
       Row{"status", "", "everything that telemetry says", kAlways, &Self::status, ""},
@@ -73,9 +73,11 @@ std::span<const Parol6Console::Row> Parol6Console::rows() noexcept {
       Row{"disable", "", "let the board ignore all motion", kAlways, &Self::disable, ""},
       Row{"clear", "", "clear error: ends a homing, enables nothing", kAlone, &Self::clear, ""},
       Row{"home", "", "find the zero of every joint; takes half a minute", kAlone, &Self::home, ""},
-      Row{"jog", "jN SPEED [SECONDS]",
-          "run a joint until 'stop'; SPEED in steps/s, or 10deg for deg/s", kAlone, &Self::jog,
-          kJointWords},
+      Row{"jog", "jN | world AXIS | tool AXIS  SPEED [SECONDS]",
+          "run a joint until 'stop', SPEED in steps/s or 10deg for deg/s; or the tool along x y z "
+          "or "
+          "about rx ry rz, SPEED in mm/s or deg/s",
+          kAlone, &Self::jog, "j1 j2 j3 j4 j5 j6 world tool|x y z rx ry rz"},
       Row{"stop", "", "make the arm stand, whatever it does", kAlways, &Self::stop_arm, ""},
       Row{"goto", "jN=PLACE ...", "move joints together; PLACE in steps, or 90deg", kAlone,
           &Self::go_to, "j1= j2= j3= j4= j5= j6="},
@@ -213,8 +215,7 @@ bool Parol6Console::may_go_to(const JointSteps& goal) {
 Read Parol6Console::help(Words words) {
   if (words.size() > 1) return wrong("");
   const auto name = words.empty() ? std::string_view{} : words.front();
-  auto text = help_text(rows(), name);
-  if (name == "cartesian") text = "Cartesian jog comes with motion planning; for now, jog joints";
+  const auto text = help_text(rows(), name);
   if (text.empty()) return wrong(fmt::format("there is no command '{}'", name));
   say_(Tone::kAnswer, text);
   return {};
@@ -259,6 +260,8 @@ Read Parol6Console::home(Words words) {
 }
 
 Read Parol6Console::jog(Words words) {
+  if (!words.empty() && words[0] == "world") return jog_tool(JogFrame::kWorld, words.subspan(1));
+  if (!words.empty() && words[0] == "tool") return jog_tool(JogFrame::kTool, words.subspan(1));
   if (words.size() != 2 && words.size() != 3) return wrong("");
   const auto joint = parse_joint(words[0]);
   if (!joint) return wrong(joint.error());
@@ -271,6 +274,20 @@ Read Parol6Console::jog(Words words) {
   const auto time = parse_seconds(words[2]);
   if (!time) return wrong(time.error());
   go_on_if("jog", begin_jog_for(drive_, *joint, *speed, *time));
+  return {};
+}
+
+Read Parol6Console::jog_tool(JogFrame frame, Words words) {
+  if (words.size() != 2 && words.size() != 3) return wrong("");
+  const auto velocity = parse_tool_speed(words[0], words[1]);
+  if (!velocity) return wrong(velocity.error());
+  std::optional<Duration> time;
+  if (words.size() == 3) {
+    const auto seconds = parse_seconds(words[2]);
+    if (!seconds) return wrong(seconds.error());
+    time = *seconds;
+  }
+  go_on_if("jog", begin_tool_jog(drive_, {frame, *velocity}, time));
   return {};
 }
 

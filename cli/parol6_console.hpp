@@ -18,6 +18,7 @@
 #include "harness/drive/parol6/activity.hpp"
 #include "harness/drive/parol6/drive.hpp"
 #include "harness/drive/parol6/drive_loop.hpp"
+#include "harness/motion/parol6/cartesian_jog.hpp"
 #include "harness/rig/rig.hpp"
 
 namespace armjig::cli {
@@ -58,6 +59,7 @@ class Parol6Console final : public DeviceConsole {
   Read clear(Words words);
   Read home(Words words);
   Read jog(Words words);
+  Read jog_tool(parol6::JogFrame frame, Words words);
   Read stop_arm(Words words);
   Read go_to(Words words);
   Read out(Words words);

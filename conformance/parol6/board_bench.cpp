@@ -95,14 +95,14 @@ std::string BoardBench::behind(std::string text) const {
   return about_.empty() ? text : fmt::format("{} ({})", text, about_);
 }
 
-/// Not sooner than a millisecond behind the frame before: the board writes its CAN frames to one
+/// Not sooner than a millisecond behind the answer before: the board writes its CAN frames to one
 /// mailbox and loses what comes while that is full.
 Answer BoardBench::ask(const CommandFrame& frame, Duration within) {
-  pause(last_asked_ + 1ms - now());
+  pause(last_answered_ + 1ms - now());
   const auto asked = now();
-  last_asked_ = asked;
   send(encode(frame));
   const auto answer = next_answer(asked, within);
+  last_answered_ = now();
   if (!answer) {
     fail_by_silence(behind("an answer"),
                     fmt::format("none within {:.0f} ms", milliseconds(within)));
@@ -221,8 +221,9 @@ void BoardBench::bring_to(std::size_t start) {
   if (std::exchange(is_spoiled_, false) || start == kFresh) power_cycle();
   if (start == kFresh) return;  // its first answer is for the case
   if (!is_alive()) fail_by_silence("an answer", "silence");
-  if (start == kEnabled || start == kHomed) enable();
+  if (start == kHomed || start == kEnabled) enable();
   if (start == kHomed) home();
+  if (start == kEnabled) walk_back();
 }
 
 void BoardBench::spoil() {
@@ -261,7 +262,6 @@ void BoardBench::enable() {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     expect(answer, fmt::format("speed.j{}", j + 1), 0);
   }
-  walk_back();
 }
 
 /// Cases drive unhomed joints to and fro; what remains must not add up until a switch is hit.
@@ -269,8 +269,7 @@ void BoardBench::walk_back() {
   constexpr int kNear = 20;
   constexpr int kMost = 1500;  // what a guard lets pass for every joint
   auto answer = ask(idle());
-  if (is_homed(answer)) return;
-  if (!origin_) origin_ = answer.position;
+  if (!origin_) origin_ = is_homed(answer) ? kStandby : answer.position;
   const auto is_back = [&](const Answer& now) {
     return std::ranges::equal(now.position, *origin_, [](Steps a, Steps b) {
       return std::abs(a.value - b.value) <= kNear;
@@ -303,7 +302,7 @@ void BoardBench::home() {
         },
         kHomingTime);
     if (!finished) fail("all joints homed", "not within 90 s");
-    origin_.reset();
+    origin_ = kStandby;
     act(idle());
   }
   walk_to_standby();

@@ -2,6 +2,8 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <optional>
+#include <utility>
 
 #include "conformance/parol6/board_bench.hpp"
 #include "conformance/parol6/chapters.hpp"
@@ -176,11 +178,11 @@ void unlimited(BoardBench& board) {
 void no_catch_up(BoardBench& board) {
   board.act(jog(kJ5, 100));
   board.act(with_code(42));
-  board.pause(450ms);
+  board.pause(250ms);
   const auto before = board.act(jog(kJ5, 100));
   const auto after = board.ask(jog(kJ5, 100));
   board.act(idle());
-  board.about("a jog at 100 steps/s that has paused for 450 ms");
+  board.about("a jog at 100 steps/s that has paused for 250 ms");
   const auto most = 2 + (after.received - before.asked) / 10ms;
   board.expect_between(after, "position.j5", before.position[kJ5].value,
                        before.position[kJ5].value + most);
@@ -193,8 +195,9 @@ void same_speed(BoardBench& board) {
   board.touch("position.j2", -51'400);
   board.touch("position.j3", 35'000);
   board.act(with_code(100));
-  const auto backs_off = [](const Answer& answer) {
-    return answer.speed[0].value == -2050 && answer.position[0].value > 100;
+  const auto backs_off = [before = std::optional<Steps>{}](const Answer& answer) mutable {
+    const auto last = std::exchange(before, answer.position[0]);
+    return answer.speed[0].value == -2050 && last && answer.position[0].value > last->value;
   };
   board.about("homing that has reached the switches of J1 to J3");
   if (!board.ask_until(idle(), backs_off, 5s)) board.fail("j1 to back off", "it does not");

@@ -23,7 +23,7 @@ enum class Rules : std::uint8_t {
   /// The document's, made precise by recordings: ways from step to step, all of a move's samples,
   /// its first and its last included, fractions of a step cut off; straight lines in closed form.
   kDocumented,
-  /// The shipped PC program's with its roundings and its slips (docs/spec/parol6.md, "Planning").
+  /// The shipped PC program's with its roundings and its slips (docs/motion.md).
   kCommander,
 };
 
@@ -108,7 +108,7 @@ struct Refusal {
 
   friend bool operator==(const Refusal&, const Refusal&) = default;
 };
-/// For people: `j5 would be at 90.000 deg at 0.00 s; its range ends at 90.000 deg`.
+/// For people: `j5 would be at 95.100 deg at 1.30 s, its range ends at 90.000 deg`.
 [[nodiscard]] std::string describe(const Refusal& refusal);
 
 /// A stretch of a line where the tool cannot move in every direction, followed or not.

@@ -66,7 +66,7 @@ TEST(KinovaServer, AnswersAsTheMatrixOfTheRecordingsSays) {
   ASSERT_GT(table["entries"].size(), 80U);
   for (const auto& cell : table["entries"]) {
     auto bench = bench_in(cell["state"]);
-    ASSERT_EQ(to_string(bench.server.state()), cell["state"]);
+    ASSERT_EQ(to_string(bench.server.state()), cell["state"].get<std::string>());
     bench.send(cell["command"].get<std::string>() + "\r\n");
     bench.pass(200ms);
     std::string replies;
@@ -75,7 +75,7 @@ TEST(KinovaServer, AnswersAsTheMatrixOfTheRecordingsSays) {
       replies += text.ends_with("\r\n") ? text : text + "\r\n";
     }
     EXPECT_EQ(bench.heard(bench.client), replies) << cell.dump();
-    EXPECT_EQ(to_string(bench.server.state()), cell["next_state"]) << cell.dump();
+    EXPECT_EQ(to_string(bench.server.state()), cell["next_state"].get<std::string>()) << cell.dump();
   }
 }
 
