@@ -85,6 +85,9 @@ class Server {
     kEnded,  ///< nobody listens
   };
   [[nodiscard]] Life life() const noexcept;
+  [[nodiscard]] bool is_listening() const noexcept {
+    return life() == Life::kRunning || life() == Life::kHung;
+  }
   [[nodiscard]] State state() const noexcept { return state_; }
   /// When the server began to listen; none before.
   [[nodiscard]] std::optional<Instant> listening_since() const noexcept { return listening_since_; }

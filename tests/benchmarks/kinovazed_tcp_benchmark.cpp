@@ -55,7 +55,8 @@ void documented_server(benchmark::State& state) {
   options.behaviour = kinovazed::kDocumentedBehaviour;
   options.call_time = {};
   kinovazed::Server server{kinovazed::ArmPort{kinovazed::JacoArm{}}, options};
-  auto host = SessionHost::open(make_hosted_server(std::move(server)), {.tcp = {.port = 0}});
+  auto host = SessionHost::open(make_hosted_server(kinovazed::DefectiveServer{std::move(server)}),
+                                {.tcp = {.port = 0}});
   std::thread thread{[&host] { host->run(); }};
   ping(state, host->target().substr(4), kCommand, kReply.size());
   host->stop();
