@@ -13,12 +13,10 @@ namespace armjig::arm {
 /// mean different orientations in them: a pose without its convention says nothing.
 enum class Convention : std::uint8_t {
   /// R = Rx(third) Ry(second) Rz(first): what the PAROL6 commander takes and displays. Its "Rx"
-  /// turns
-  /// about the tool's z axis.
+  /// turns about the tool's z axis.
   kCommander,
   /// R = Rx(first) Ry(second) Rz(third): the PAROL6 Python API, relative moves of the commander,
-  /// and
-  /// Kinova's ThetaX, ThetaY, ThetaZ (pitch, yaw, roll of KinovaZED).
+  /// and Kinova's ThetaX, ThetaY, ThetaZ (pitch, yaw, roll of KinovaZED).
   kXyz,
   /// R = Rz(third) Ry(second) Rx(first): roll, pitch, yaw of URDF.
   kRollPitchYaw,

@@ -18,15 +18,6 @@ namespace {
 /// What the commander takes away from telemetry before a line, radians.
 constexpr arm::SixJoints kStartNudge{1e-4, 1.5e-4, 1.5e-4, 1.5e-4, 1.5e-4, 1e-3};
 
-/// The share of the way after a share of the time, 0 to 1. The program passes its profile where its
-/// kinematics library expects times, and so gets a trapezoid on top.
-double path_share(Law law, double t, double last) noexcept {
-  const double profiled = law == Law::kPolynomial
-                              ? motion::Quintic{0, 1, last}.at(t).position
-                              : motion::Trapezoid::thirds(0, 1, last).at(t).position;
-  return motion::Trapezoid::thirds(0, 1, 1).at(profiled).position;
-}
-
 /// A joint that changes its sign from one tick to the next is taken for one that jumps.
 bool has_flipped(double before, double now) noexcept {
   constexpr double kJump = 0.7;
@@ -65,6 +56,13 @@ std::optional<Refusal> stop_at(const arm::SixJoints& before, const CommanderIkAn
 
 }  // namespace
 
+double commander_path_share(Law law, double t, double last) noexcept {
+  const double profiled = law == Law::kPolynomial
+                              ? motion::Quintic{0, 1, last}.at(t).position
+                              : motion::Trapezoid::thirds(0, 1, last).at(t).position;
+  return motion::Trapezoid::thirds(0, 1, 1).at(profiled).position;
+}
+
 tl::expected<Plan, Refusal> plan_commander_line(const LineTarget& target, const JointSteps& start,
                                                 const Timing& timing, Tracking tracking) {
   double duration = timing.duration.value_or(0);
@@ -92,7 +90,7 @@ tl::expected<Plan, Refusal> plan_commander_line(const LineTarget& target, const 
       .tracking = tracking, .law = timing.law.value_or(Law::kTrapezoid), .duration = duration};
   for (std::size_t k = 1; k + 1 <= count && !plan.stop; ++k) {
     const double t = kTick * static_cast<double>(k);
-    const auto now = commander_ik(arm, line.at(path_share(plan.law, t, last)), joints);
+    const auto now = commander_ik(arm, line.at(commander_path_share(plan.law, t, last)), joints);
     const auto set_point = set_point_of(joints, now.joints);
     plan.stop = stop_at(joints, now, set_point, t);
     const bool is_sent = !plan.stop || plan.stop->reason == Refusal::Reason::kNotConverged;

@@ -28,6 +28,10 @@ struct LineTarget {
                                                                Tracking tracking,
                                                                const PlannerSettings& settings);
 
+/// The share of the commander's way, 0 to 1, at `t` seconds of `last`. The program passes its
+/// profile where its kinematics library expects times, and so gets a trapezoid on top.
+[[nodiscard]] double commander_path_share(Law law, double t, double last) noexcept;
+
 [[nodiscard]] tl::expected<Plan, Refusal> plan_commander_line(const LineTarget& target,
                                                               const JointSteps& start,
                                                               const Timing& timing,

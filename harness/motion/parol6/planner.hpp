@@ -23,7 +23,7 @@ enum class Rules : std::uint8_t {
   /// The document's, made precise by recordings: ways from step to step, all of a move's samples,
   /// its first and its last included, fractions of a step cut off; straight lines in closed form.
   kDocumented,
-  /// The shipped PC program's with its roundings and its slips (docs/spec/parol6.md, "Planning").
+  /// The shipped PC program's with its roundings and its slips (docs/motion.md).
   kCommander,
 };
 

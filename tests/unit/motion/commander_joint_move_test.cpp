@@ -141,6 +141,66 @@ TEST(CommanderJointMove, HasDefaultsForSpeedAndAccelerationTogetherOnly) {
   EXPECT_EQ(half.set_points, without.set_points);
 }
 
+constexpr std::array<double, 6> kAside{80, -90, 180, 0, 0, 180};
+
+Refusal refused(std::array<double, 6> degrees, Timing timing) {
+  const auto result = plan(joint_move(degrees, timing), standby(), kCommander);
+  EXPECT_FALSE(result.has_value());
+  return result.has_value() ? Refusal{} : result.error();
+}
+
+TEST(CommanderJointMove, DoesNotLookAtPercentsIfATimeIsThere) {
+  auto timing = in_time(1);
+  timing.speed = 101;
+  timing.acceleration = -1;
+  EXPECT_EQ(planned(kAside, timing).set_points, planned(kAside, in_time(1)).set_points);
+}
+
+TEST(CommanderJointMove, RefusesPercentsOnlyIfBothAreThere) {
+  EXPECT_EQ(refused(kAside, at_pace(101, 50)).reason, Refusal::Reason::kPercentOutOfRange);
+  EXPECT_EQ(refused(kAside, at_pace(50, -0.1)).reason, Refusal::Reason::kPercentOutOfRange);
+  EXPECT_EQ(planned(kAside, {.speed = 101}).set_points, planned(kAside, {}).set_points);
+}
+
+TEST(CommanderJointMove, TakesATimeOfZeroForNone) {
+  EXPECT_EQ(planned(kAside, {.duration = 0}).set_points, planned(kAside, {}).set_points);
+  EXPECT_EQ(planned(kAside, {.duration = -1}).set_points, planned(kAside, {}).set_points);
+  auto timing = at_pace(50, 50);
+  timing.duration = 0;
+  EXPECT_EQ(planned(kAside, timing).set_points, planned(kAside, at_pace(50, 50)).set_points);
+  timing.duration = -1;
+  EXPECT_EQ(refused(kAside, timing).reason, Refusal::Reason::kImpossibleDuration);
+}
+
+TEST(CommanderJointMove, SendsNothingInOneSampleAndCannotPlanLess) {
+  EXPECT_TRUE(planned(kAside, in_time(0.01)).set_points.empty());
+  EXPECT_EQ(refused(kAside, in_time(0.009)).reason, Refusal::Reason::kImpossibleDuration);
+}
+
+TEST(CommanderJointMove, HoldsJointsThatAreThere) {
+  const auto move = planned({90, -90, 180, 0, 0, 170}, at_pace(50, 50));
+  for (const auto& set_point : move.set_points) {
+    EXPECT_EQ(set_point.position[0], Steps{10240});
+    EXPECT_EQ(set_point.speed[0], StepsPerSecond{0});
+  }
+}
+
+TEST(CommanderJointMove, LooksAtSpeedsOfItsPaceOnly) {
+  // Joint 4 leads and is three times as fast as joint 1 may be.
+  const auto refusal = refused({30, -90, 180, 61, 0, 180}, at_pace(100, 100));
+  EXPECT_EQ(refusal.reason, Refusal::Reason::kTooFast);
+  EXPECT_EQ(refusal.joint, 0U);
+  EXPECT_EQ(planned({30, -90, 180, 61, 0, 180}, in_time(0.1)).set_points.size(), 9U);
+}
+
+TEST(CommanderJointMove, RefusesTheLimitsThemselves) {
+  EXPECT_EQ(refused({90, -90, 180, 0, 90, 180}, in_time(4)).joint, 4U);
+  EXPECT_EQ(planned({90, -90, 180, 0, 89.99, 180}, in_time(4)).set_points.size(), 399U);
+  // A 1e-7 degree beyond its lower limit a joint is within.
+  EXPECT_EQ(planned({90, -90, 180, 0, -90, 180}, in_time(4)).set_points.size(), 399U);
+  EXPECT_EQ(planned({90, -90, 180, 0, 0, 0}, in_time(4)).set_points.size(), 399U);
+}
+
 TEST(CommanderJointMove, CutsTheNumberOfSamplesOff) {
   const auto count = [](double seconds) {
     return planned({80, -90, 180, 0, 0, 180}, in_time(seconds)).set_points.size() + 1;

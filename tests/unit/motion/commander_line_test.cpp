@@ -8,6 +8,7 @@
 #include "harness/arm/orientation.hpp"
 #include "harness/motion/parol6/commander_ik.hpp"
 #include "harness/motion/parol6/conversion.hpp"
+#include "harness/motion/parol6/line.hpp"
 #include "harness/motion/parol6/planner.hpp"
 
 // The figures are those of the reference, with its tolerances.
@@ -112,6 +113,50 @@ TEST(CommanderLine, IsTheReferencesLineFromStandby) {
           << "k=" << k << " j" << j + 1;
     }
   }
+}
+
+// P8 of the reference: 3.6 s, of which the last point of the grid is at 3.59 s.
+TEST(CommanderLine, PutsASecondTrapezoidOnTopOfItsProfile) {
+  struct Share {
+    std::size_t k{};
+    double trapezoid{};
+    double polynomial{};
+  };
+  for (const auto& [k, trapezoid, polynomial] :
+       {Share{60, 0.008887, 0.002878}, Share{120, 0.142196, 0.100414},
+        Share{180, 0.503134, 0.503917}, Share{240, 0.862483, 0.903466},
+        Share{300, 0.991690, 0.997374}, Share{358, 1.000000, 1.000000}}) {
+    const double t = kTick * static_cast<double>(k);
+    EXPECT_NEAR(commander_path_share(Law::kTrapezoid, t, 3.59), trapezoid, 1e-6) << k;
+    EXPECT_NEAR(commander_path_share(Law::kPolynomial, t, 3.59), polynomial, 1e-6) << k;
+  }
+}
+
+TEST(CommanderLine, LooksAtPercentsOnlyIfBothAreThereAndNoTimeIs) {
+  const auto result = [](Timing timing) {
+    const Move move{.kind = Move::Kind::kToolLine, .timing = timing};
+    return plan(move, standby(), kCommander);
+  };
+  EXPECT_EQ(result({.speed = 101, .acceleration = 50}).error().reason,
+            Refusal::Reason::kPercentOutOfRange);
+  EXPECT_EQ(result({.speed = 50, .acceleration = 50})->set_points.size(), 359U);
+  EXPECT_EQ(result({.speed = 101})->set_points.size(), 359U);
+  EXPECT_EQ(result({.speed = 101, .acceleration = 50, .duration = 1})->set_points.size(), 99U);
+  EXPECT_EQ(result({.duration = -1})->set_points.size(), 359U);
+  EXPECT_EQ(result({.speed = 50, .acceleration = 50, .duration = -1}).error().reason,
+            Refusal::Reason::kImpossibleDuration);
+}
+
+// K6: along the tool's x axis, which points up there.
+TEST(CommanderLine, GoesAlongTheAxesOfTheTool) {
+  const Move move{.kind = Move::Kind::kToolLine, .target = {-80, 0, 0, 0, 0, 0}};
+  const auto result = plan(move, standby(), kCommander);
+  ASSERT_TRUE(result.has_value());
+  ASSERT_FALSE(result->stop);
+  const auto end = forward(arm::parol6_commander(), radians_of(result->set_points.back().position));
+  EXPECT_NEAR(1000 * end.position.x, 0, 0.3);  // begins beside standby by up to 1e-3 rad
+  EXPECT_NEAR(1000 * end.position.y, 262.57, 0.3);
+  EXPECT_NEAR(1000 * end.position.z, 208.75, 0.3);
 }
 
 TEST(CommanderLine, CountsItsSamplesOnTheGridOfItsDuration) {
