@@ -125,6 +125,12 @@ std::string command_of(const Options& options) {
   return text;
 }
 
+/// What was not run has one line, for it may be most of a suite.
+std::string line_of(const ReportRow& row) {
+  if (row.verdict != Verdict::kSkipped) return to_text(row);
+  return fmt::format("SKIPPED   {:<36} {}\n", row.name, row.actual);
+}
+
 /// In one line what was not run, and why; nothing if everything was.
 void print_skipped(const Report& result) {
   std::map<std::string, int> reasons;
@@ -151,7 +157,7 @@ Exit run(const Suite& suite, Options options) {
   options.run.command = command_of(options);
   const auto started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   auto result = run_suite(suite, **bench, options.run, [](const ReportRow& row) {
-    fmt::print("{}", to_text(row));
+    fmt::print("{}", line_of(row));
     std::fflush(stdout);
   });
   result.started = started;
@@ -181,7 +187,7 @@ Exit conformance(Options options) {
     const auto& filter = options.run.selection.filter;
     (void)report({ErrorCode::kBadValue,
                   filter.empty() ? "--shard " + options.shard : "--filter " + filter,
-                  "no case is selected; --list shows the requirements"});
+                  "it selects no case of this profile and tier; --list shows the requirements"});
     return Exit::kNothing;
   }
   return run(*suite, std::move(options));

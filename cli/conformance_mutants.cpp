@@ -37,12 +37,20 @@ Exit list_mutants(const MutantsEntry& entry, const std::string& filter) {
     fmt::print("{:<40} {}{}{}\n", mutant.name, mutant.section,
                mutant.equivalent.empty() ? "" : "; equivalent: ", mutant.equivalent);
   }
-  return has_any ? Exit::kPassed : Exit::kNothing;
+  if (has_any) return Exit::kPassed;
+  (void)report({ErrorCode::kBadValue, "--filter " + filter,
+                "it selects no mutant; --list without it shows all"});
+  return Exit::kNothing;
 }
 
 Exit run(const Suite& suite, const MutantsEntry& entry, const Options& options) {
   const auto result = run_mutants(suite, entry, options.run);
   if (!result) return report(result.error());
+  if (result->fates.empty()) {
+    (void)report({ErrorCode::kBadValue, "--filter " + options.run.filter,
+                  "it selects no mutant; --list shows them"});
+    return Exit::kNothing;
+  }
   const auto summary = to_report(*result, suite, options.run);
   for (const auto& row : summary.rows) {
     if (row.verdict != Verdict::kPass) fmt::print("{}", to_text(row));

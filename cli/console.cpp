@@ -19,6 +19,7 @@
 #include "cli/device_console.hpp"
 #include "cli/kinovazed_console.hpp"
 #include "cli/line_editor.hpp"
+#include "cli/morap_console.hpp"
 #include "cli/pace.hpp"
 #include "cli/parol6_console.hpp"
 #include "cli/screen.hpp"
@@ -272,6 +273,7 @@ class TerminalSession {
 
 constexpr std::array kConsoles{
     ConsoleEntry{"kinovazed", open_kinova_console},
+    ConsoleEntry{"morap", open_morap_console},
     ConsoleEntry{"parol6", open_parol6_console},
 };
 

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/emulate_bus.hpp"
 #include "conformance/program_check.hpp"
+#include "emulators/host/buses.hpp"
 #include "emulators/host/devices.hpp"
 #include "emulators/host/host.hpp"
 #include "emulators/host/session_host.hpp"
@@ -29,6 +31,7 @@ constexpr auto kHelp =
     "  armjig emulate parol6 --tcp 4000             as a byte stream on TCP, this machine only\n"
     "  armjig emulate parol6 --tcp 0 --pty --json   both, any free port, for scripts\n"
     "  armjig emulate parol6 --set fault=swap-bytes:speed.j1   a faulty one\n"
+    "  armjig emulate morap --set nodes=1,2 --set bus=1        nodes on a virtual /dev/i2c-1\n"
     "  armjig emulate parol6 --check                tells what the client program does wrong\n"
     "  armjig emulate kinovazed                     a server on its own TCP port, 51717\n"
     "  armjig emulate kinovazed --tcp 0 --set objectives=my.json\n"
@@ -57,6 +60,7 @@ std::string all_devices() {
   for (const auto& entry : hosted_devices()) {
     names += std::string{entry.device} + ", ";
   }
+  for (const auto& entry : hosted_buses()) names += std::string{entry.device} + ", ";
   names.resize(names.size() - 2);
   return names;
 }
@@ -166,6 +170,16 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
 Exit emulate(const Options& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
+  if (const auto* bus = find_hosted_bus(options.device)) {
+    const bool has_others = options.wants_pty || !options.pty.link.empty() || options.wants_tcp ||
+                            options.speed != 1 || options.wants_check;
+    if (has_others) {
+      return report({ErrorCode::kBadValue, options.device,
+                     "a bus takes --set and --json, and no other option"});
+    }
+    return emulate_bus(*bus, *settings,
+                       options.wants_json ? Announcement::kJson : Announcement::kText);
+  }
   for (const auto& entry : hosted_servers()) {
     if (entry.device == options.device) return emulate_server(entry, options, *settings);
   }

@@ -58,7 +58,7 @@ class Transcript {
 
   void add(Instant time, BusAddress address, Access access, Bytes data) {
     const auto read = access == Access::kRead ? 1U : 0U;
-    std::vector<std::byte> bytes{static_cast<std::byte>(address.value << 1 | read)};
+    std::vector<std::byte> bytes{static_cast<std::byte>(unsigned{address.value} << 1U | read)};
     bytes.insert(bytes.end(), data.begin(), data.end());
     std::vector<Message> messages;
     dissector_->feed(read == 1 ? Direction::kFromDevice : Direction::kToDevice, time, bytes,

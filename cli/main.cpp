@@ -58,6 +58,13 @@ std::string names(const CLI::App& app) {
   return names;
 }
 
+/// The command as far as it was understood: `armjig trace verify`.
+std::string call_of(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app.get_name()
+                        : fmt::format("{} {}", app.get_name(), call_of(*chosen.front()));
+}
+
 /// CLI11's own codes start at 100; ours are fixed.
 Exit exit_of(const CLI::App& app, const CLI::ParseError& error) {
   const bool is_help = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
@@ -65,7 +72,7 @@ Exit exit_of(const CLI::App& app, const CLI::ParseError& error) {
     app.exit(error);
     return Exit::kPassed;
   }
-  fmt::print(stderr, "armjig: {}; see 'armjig --help'\n", error.what());
+  fmt::print(stderr, "armjig: {}; see '{} --help'\n", error.what(), call_of(app));
   return Exit::kUsage;
 }
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -47,6 +48,7 @@ struct Options {
   double current = 0;  ///< rated; 0: the motor's
   std::string csv;
   std::string html;
+  std::string svg;
   std::string beside;
 };
 
@@ -108,6 +110,9 @@ Series series_of(const StepResponse& response, std::string name, double StepSamp
   return series;
 }
 
+/// Of a recording, for the legend.
+std::string name_of(const std::string& path) { return std::filesystem::path{path}.stem().string(); }
+
 std::vector<Plot> plots_of(const StepResponse& response, const Options& options,
                            std::vector<PlotPoint> recording) {
   const bool is_speed = response.controller.kind == ControllerKind::kSpeed;
@@ -119,7 +124,8 @@ std::vector<Plot> plots_of(const StepResponse& response, const Options& options,
               time,
               {unit},
               {series_of(response, "simulated", &StepSample::value), asked}};
-  if (!recording.empty()) answer.series.push_back({"recorded", std::move(recording), Shape::kLine});
+  if (!recording.empty())
+    answer.series.push_back({name_of(options.beside), std::move(recording), Shape::kLine});
   return {answer,
           {"Voltage", time, {"voltage / V"}, {series_of(response, {}, &StepSample::volts)}},
           {"Current", time, {"current / A"}, {series_of(response, {}, &StepSample::amperes)}}};
@@ -174,6 +180,10 @@ Exit simulate(const Options& options) {
   if (!options.csv.empty()) {
     if (const auto done = write_csv(response, options.csv); !done) return cli::report(done.error());
   }
+  if (!options.svg.empty()) {
+    const auto done = write_file(options.svg, to_svg(made.sections.back().plots.front()));
+    if (!done) return cli::report(done.error());
+  }
   if (const auto done = write_files(made, {.html = options.html}); !done) {
     return cli::report(done.error());
   }
@@ -215,6 +225,8 @@ void add_morap_simulate(CLI::App& morap, Action& action) {
   add_plant_options(*command, *options);
   command->add_option("--csv", options->csv, "write all samples to this file")->type_name("FILE");
   command->add_option("--html", options->html, "write a page with plots to this file")
+      ->type_name("FILE");
+  command->add_option("--svg", options->svg, "write the plot of the answer to this file")
       ->type_name("FILE");
   command->add_option("--beside", options->beside, "draw this recording into the plot")
       ->type_name("FILE");

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/morap_watch.hpp"
 #include "cli/pace.hpp"
 #include "cli/parol6_view.hpp"
 #include "cli/screen.hpp"
@@ -32,6 +33,7 @@ constexpr auto kHelp =
     "\n"
     "  armjig watch parol6 --target pty:/tmp/parol6\n"
     "  armjig watch parol6 --target emulated: --seconds 10      in virtual time, at once\n"
+    "  armjig watch morap --target i2c:/dev/i2c-1               all nodes that answer\n"
     "  armjig watch kinovazed --target tcp:127.0.0.1:51717\n"
     "  armjig watch parol6 --target pty:/tmp/parol6 --json | jq .joints[0].position_deg\n"
     "\n"
@@ -202,7 +204,30 @@ const WatchedEntry& entry_of(const std::string& device) {
   return *std::ranges::find(watched_devices(), device, &WatchedEntry::device);
 }
 
+/// A round of questions to every node on the bus.
+Exit watch_bus(const Options& options) {
+  MorapWatch watch{.target = options.target};
+  if (options.reconnects) {
+    return report({ErrorCode::kUnsupported, "--reconnect", "of a bus it is not there yet"});
+  }
+  watch.rate = options.rate.value_or(watch.rate);
+  watch.count = options.count;
+  if (options.seconds) {
+    watch.count = static_cast<std::uint64_t>(std::max(1.0, *options.seconds * watch.rate));
+  }
+  const bool never_ends = !watch.count && !has_screen();
+  if (never_ends && options.target.target.starts_with("emulated:")) {
+    return report({ErrorCode::kBadValue, options.target.target + " in virtual time never ends",
+                   "say --seconds or --count"});
+  }
+  watch.form = options.json   ? MorapWatch::Form::kJson
+               : has_screen() ? MorapWatch::Form::kScreen
+                              : MorapWatch::Form::kLines;
+  return watch_morap(watch);
+}
+
 Exit watch(const Options& options) {
+  if (options.device == "morap") return watch_bus(options);
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
   if (options.reconnects) how->when_gone = WhenGone::kReopen;
@@ -236,6 +261,7 @@ Exit watch(const Options& options) {
 std::vector<std::string> device_names() {
   std::vector<std::string> names;
   for (const auto& entry : watched_devices()) names.emplace_back(entry.device);
+  names.emplace_back("morap");
   return names;
 }
 

@@ -35,6 +35,9 @@ if(ARMJIG_BUILD_CLI)
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/60-armjig.rules DESTINATION lib/udev/rules.d
           COMPONENT runtime)
+  configure_file(packaging/armjig-emulate@.service.in armjig-emulate@.service @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/armjig-emulate@.service DESTINATION lib/systemd/system
+          COMPONENT runtime)
   install(DIRECTORY captures/parol6 DESTINATION ${CMAKE_INSTALL_DATADIR}/armjig/captures
           COMPONENT runtime)
 endif()

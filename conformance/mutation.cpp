@@ -13,6 +13,8 @@
 #include <utility>
 
 #include "conformance/demo/mutants.hpp"
+#include "conformance/kinovazed/mutants.hpp"
+#include "conformance/morap/mutants.hpp"
 #include "conformance/parol6/mutants.hpp"
 #include "conformance/selection.hpp"
 #include "harness/core/version.hpp"
@@ -191,7 +193,7 @@ class Mutation {
     }
     std::vector<char> is_proven(open_ones.size());
     in_parallel(options_.threads, open_ones.size(),
-                [&](std::size_t i) { is_proven[i] = breaks_on_a_mutant(*open_ones[i]); });
+                [&](std::size_t i) { is_proven[i] = breaks_on_a_mutant(*open_ones[i]) ? 1 : 0; });
     for (std::size_t i = 0; i < open_ones.size(); ++i) {
       if (is_proven[i] == 0) result_.unproven.push_back(open_ones[i]);
     }
@@ -269,6 +271,8 @@ ReportSection rates_of(const MutationResult& result) {
 
 constexpr std::array kMutants{
     MutantsEntry{"demo", demo::all_mutants, demo::mutant_hints},
+    MutantsEntry{"kinovazed", kinovazed::all_mutants, kinovazed::mutant_hints},
+    MutantsEntry{"morap", morap::all_mutants, morap::mutant_hints},
     MutantsEntry{"parol6", parol6::all_mutants, parol6::mutant_hints},
 };
 

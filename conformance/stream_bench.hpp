@@ -56,15 +56,4 @@ class StreamBench : public Bench {
   std::optional<Error> error_;
 };
 
-/// A case body for one kind of bench, as the engine calls it. The suite that has the case also made
-/// the bench, so its kind is known.
-template <auto body>
-struct OnBench;
-template <class Kind, void (*body)(Kind&)>
-struct OnBench<body> {
-  static void run(Bench& bench) { body(static_cast<Kind&>(bench)); }
-};
-template <auto body>
-inline constexpr auto on = OnBench<body>::run;
-
 }  // namespace armjig

@@ -7,6 +7,8 @@
 #include <array>
 
 #include "conformance/demo/suite.hpp"
+#include "conformance/kinovazed/suite.hpp"
+#include "conformance/morap/suite.hpp"
 #include "conformance/parol6/suite.hpp"
 
 namespace armjig {
@@ -17,7 +19,8 @@ std::string name_of(const Case& one) {
 }
 
 std::span<const Suite> suites() noexcept {
-  static const std::array kSuites{demo::suite(), parol6::suite()};
+  static const std::array kSuites{demo::suite(), kinovazed::suite(), morap::suite(),
+                                  parol6::suite()};
   return kSuites;
 }
 

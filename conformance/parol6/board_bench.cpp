@@ -95,14 +95,14 @@ std::string BoardBench::behind(std::string text) const {
   return about_.empty() ? text : fmt::format("{} ({})", text, about_);
 }
 
-/// Not sooner than a millisecond behind the frame before: the board writes its CAN frames to one
+/// Not sooner than a millisecond behind the answer before: the board writes its CAN frames to one
 /// mailbox and loses what comes while that is full.
 Answer BoardBench::ask(const CommandFrame& frame, Duration within) {
-  pause(last_asked_ + 1ms - now());
+  pause(last_answered_ + 1ms - now());
   const auto asked = now();
-  last_asked_ = asked;
   send(encode(frame));
   const auto answer = next_answer(asked, within);
+  last_answered_ = now();
   if (!answer) {
     fail_by_silence(behind("an answer"),
                     fmt::format("none within {:.0f} ms", milliseconds(within)));

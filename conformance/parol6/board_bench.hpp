@@ -132,7 +132,7 @@ class BoardBench final : public StreamBench {
   std::string about_;
   std::vector<Answer> homing_log_;
   std::optional<std::array<Steps, kJointCount>> origin_;  ///< where `kEnabled` cases begin
-  Instant last_asked_{};
+  Instant last_answered_{};
   Duration noise_{};
   bool is_spoiled_ = false;
 };

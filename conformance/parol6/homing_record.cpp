@@ -15,9 +15,10 @@ std::vector<Answer> HomingRecord::with_bits(std::uint8_t homed) const {
 
 std::vector<Answer> HomingRecord::with_speed(std::uint8_t homed, std::size_t joint,
                                              int speed) const {
-  auto answers = with_bits(homed);
-  std::erase_if(answers, [&](const Answer& answer) { return answer.speed[joint].value != speed; });
-  return answers;
+  const auto answers = with_bits(homed);
+  const auto has_speed = [&](const Answer& answer) { return answer.speed[joint].value == speed; };
+  const auto begin = std::ranges::find_if(answers, has_speed);
+  return {begin, std::find_if_not(begin, answers.end(), has_speed)};
 }
 
 std::vector<std::uint8_t> HomingRecord::bits() const {

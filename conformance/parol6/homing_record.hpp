@@ -17,7 +17,8 @@ class HomingRecord {
 
   /// Answers since home acted, with these homed bits.
   [[nodiscard]] std::vector<Answer> with_bits(std::uint8_t homed) const;
-  /// Of those, the ones in which the joint has that speed.
+  /// Of those, the first unbroken stretch in which the joint has that speed: a ramp later on may
+  /// pass through it by chance.
   [[nodiscard]] std::vector<Answer> with_speed(std::uint8_t homed, std::size_t joint,
                                                int speed) const;
   /// The values of homed, without repetitions.

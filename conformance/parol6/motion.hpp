@@ -23,7 +23,7 @@ struct Stretch {
 Stretch run(BoardBench& board, const CommandFrame& frame, Duration time);
 
 /// Expects the joint to have made the steps of that speed, as far as times and the length of the
-/// board's loop (at most 100 us) leave it open.
+/// board's loop (100 us, or up to 250 us if answers take that long) leave it open.
 void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, int speed);
 
 /// Expects that no joint moves while a frame is repeated for a time.

@@ -10,6 +10,7 @@
 #include "emulators/demo/demo.hpp"
 #include "emulators/faults/faulty.hpp"
 #include "emulators/host/kinovazed_options.hpp"
+#include "emulators/host/memory_server.hpp"
 #include "emulators/host/parol6_options.hpp"
 #include "harness/link/memory_stream.hpp"
 
@@ -65,7 +66,13 @@ Outcome<std::unique_ptr<HostedServer>> host_kinovazed(const DeviceOptions& optio
   return make_hosted_server(*std::move(server));
 }
 
-constexpr std::array kServers{ServerEntry{"kinovazed", host_kinovazed, 51717}};
+Outcome<std::unique_ptr<SessionSource>> open_kinovazed(const Target& target) {
+  auto server = host_kinovazed(target.options, target.text);
+  if (!server) return tl::unexpected{server.error()};
+  return make_memory_server(*std::move(server));
+}
+
+constexpr std::array kServers{ServerEntry{"kinovazed", host_kinovazed, 51717, open_kinovazed}};
 
 std::string all_names() {
   std::string names;
@@ -84,6 +91,10 @@ std::span<const ServerEntry> hosted_servers() noexcept { return kServers; }
 
 const HostEntry& hosted_device(std::string_view device) noexcept {
   return *std::ranges::find(kDevices, device, &HostEntry::device);
+}
+
+const ServerEntry& hosted_server(std::string_view device) noexcept {
+  return *std::ranges::find(kServers, device, &ServerEntry::device);
 }
 
 Outcome<std::unique_ptr<HostedStream>> make_hosted_device(const std::string& device,

@@ -10,6 +10,7 @@
 #include "emulators/host/hosted_server.hpp"
 #include "emulators/host/hosted_stream.hpp"
 #include "harness/core/error.hpp"
+#include "harness/rig/session_rig.hpp"
 #include "harness/rig/target.hpp"
 
 namespace armjig {
@@ -31,7 +32,8 @@ struct ServerEntry {
   std::string_view device;
   Outcome<std::unique_ptr<HostedServer>> (*make)(const DeviceOptions& options,
                                                  const std::string& where);
-  std::uint16_t port;  ///< on which clients look for it
+  std::uint16_t port;       ///< on which clients look for it
+  OpenEmulatedServer open;  ///< the same server in this process, on virtual time
 };
 
 /// All of them: devices that know connections and not just bytes.
@@ -39,6 +41,9 @@ struct ServerEntry {
 
 /// The entry of a device that has one.
 [[nodiscard]] const HostEntry& hosted_device(std::string_view device) noexcept;
+
+/// The entry of a server that has one.
+[[nodiscard]] const ServerEntry& hosted_server(std::string_view device) noexcept;
 
 /// Problems: those of `make`, and `kUnknownDevice` with the names of all devices.
 [[nodiscard]] Outcome<std::unique_ptr<HostedStream>> make_hosted_device(

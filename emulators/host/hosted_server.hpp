@@ -6,10 +6,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "emulators/kinovazed/server.hpp"
+#include "emulators/kinovazed/defects/defective_server.hpp"
 
 namespace armjig {
 
@@ -30,6 +31,8 @@ class HostedServer {
   [[nodiscard]] virtual std::optional<ConnectionId> connect(Instant time) = 0;
   virtual void receive(Instant time, ConnectionId id, Bytes segment) = 0;
   virtual void half_close(Instant time, ConnectionId id) = 0;
+  /// The client has closed both directions.
+  virtual void close(Instant time, ConnectionId id) = 0;
   virtual void reset(Instant time, ConnectionId id) = 0;
   /// Bytes of a client that the server has not read.
   [[nodiscard]] virtual std::size_t unread(ConnectionId id) const = 0;
@@ -38,10 +41,12 @@ class HostedServer {
   [[nodiscard]] virtual std::optional<Instant> next_event() const = 0;
   [[nodiscard]] virtual std::span<const Event> sent() const = 0;
   virtual void clear_sent() = 0;
+  /// Does at the server's machine what no client can. False: nothing has that name.
+  [[nodiscard]] virtual bool set_input(Instant time, std::string_view name, std::int64_t value) = 0;
   /// What the server has written to its log since the last call.
   [[nodiscard]] virtual std::vector<std::string> take_log() = 0;
 };
 
-[[nodiscard]] std::unique_ptr<HostedServer> make_hosted_server(kinovazed::Server server);
+[[nodiscard]] std::unique_ptr<HostedServer> make_hosted_server(kinovazed::DefectiveServer server);
 
 }  // namespace armjig

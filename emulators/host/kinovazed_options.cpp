@@ -9,6 +9,9 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
+
+#include "emulators/kinovazed/defects/faults.hpp"
 
 namespace armjig::kinovazed {
 namespace {
@@ -18,6 +21,8 @@ struct Settings {
   ServerOptions server;
   std::string plant = "jaco";
   std::optional<Duration> call_time;
+  std::vector<Quirk> quirks;
+  std::string fault;  ///< changes what all other options have made
 };
 
 template <class Value>
@@ -81,25 +86,34 @@ std::optional<Problem> apply(const std::string& name, const std::string& value,
   if (name == "race") return put(choose(kRaces, place, value), server.race);
   if (name == "objectives") return put(read_objectives(value), server.objectives);
   if (name == "call-us") return put(parse_call_time(place, value), settings.call_time);
+  if (name == "fault") {
+    settings.fault = value;
+    return std::nullopt;
+  }
   if (name == "plant") {
     settings.plant = value;
     if (value == "jaco" || value == "bench") return std::nullopt;
     return Problem{ErrorCode::kBadValue, place, "write jaco or bench"};
   }
   return Problem{ErrorCode::kUnknownOption, where + ", " + name,
-                 "kinovazed has profile, plant, objectives, on-death, race and call-us"};
+                 "kinovazed has profile, plant, objectives, on-death, race, call-us and fault"};
 }
 
 }  // namespace
 
-Outcome<Server> make_server(const DeviceOptions& options, const std::string& where) {
+Outcome<DefectiveServer> make_server(const DeviceOptions& options, const std::string& where) {
   Settings settings;
   for (const auto& [name, value] : options) {
     if (auto wrong = apply(name, value, where, settings)) return tl::unexpected{*std::move(wrong)};
   }
   if (settings.call_time) settings.server.call_time = *settings.call_time;
+  if (!settings.fault.empty()) {
+    const auto added = add_fault(settings.fault, settings.server, settings.quirks);
+    if (!added) return tl::unexpected{added.error()};
+  }
   const auto plant = settings.plant == "bench" ? Plant{BenchArm{}} : Plant{JacoArm{}};
-  return Server{ArmPort{plant}, std::move(settings.server)};
+  return DefectiveServer{Server{ArmPort{plant}, std::move(settings.server)},
+                         std::move(settings.quirks)};
 }
 
 }  // namespace armjig::kinovazed

@@ -4,10 +4,22 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "emulators/kinovazed/pose.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/kinovazed/vocabulary.hpp"
 
 namespace armjig::kinovazed {
+
+/// How long the server pauses and waits (docs/spec/kinovazed.md, "Times").
+namespace pace {
+using std::chrono::milliseconds;
+inline constexpr Duration kPoll = milliseconds{10};
+inline constexpr Duration kOpen = milliseconds{50};
+inline constexpr Duration kRetryAtStart = milliseconds{1000};
+inline constexpr Duration kModeSettles = milliseconds{500};
+inline constexpr Duration kBeat = milliseconds{1000};
+inline constexpr Duration kRestart = milliseconds{2000};
+}  // namespace pace
 
 /// All in which a documented server and the shipped one differ, line reading aside
 /// (`LineReceiver`, `decode_command`). docs/spec/kinovazed.md has the reasons.
@@ -30,9 +42,15 @@ struct Behaviour {
   bool shares_objective{};
   /// kinovazed.retract.while-initializing: an arm that ends folded leaves the server stuck.
   bool sticks_when_folded{};
-  /// kinovazed.death: some failures hang, end or mute the server.
+  /// "Deaths": some failures hang, end or mute the server.
   bool dies{};
   std::size_t objective_count{};  ///< the first so many of `Objective` are known
+
+  // Figures in which the two agree.
+  Duration beat_period = pace::kBeat;
+  Duration mode_settles = pace::kModeSettles;
+  float units_per_full = 0.0025F;  ///< kinovazed.joystick.scale
+  Reach reach{};
 };
 
 inline constexpr Behaviour kFirmwareBehaviour{
@@ -44,16 +62,5 @@ inline constexpr Behaviour kDocumentedBehaviour{
 /// Who comes first when an action is over the moment it is asked for: both happen on real servers
 /// (kinovazed.reply.race).
 enum class RaceOrder : std::uint8_t { kReplyFirst, kEventFirst, kRandom };
-
-/// How long the server pauses and waits (docs/spec/kinovazed.md, "Times").
-namespace pace {
-using std::chrono::milliseconds;
-inline constexpr Duration kPoll = milliseconds{10};
-inline constexpr Duration kOpen = milliseconds{50};
-inline constexpr Duration kRetryAtStart = milliseconds{1000};
-inline constexpr Duration kModeSettles = milliseconds{500};
-inline constexpr Duration kBeat = milliseconds{1000};
-inline constexpr Duration kRestart = milliseconds{2000};
-}  // namespace pace
 
 }  // namespace armjig::kinovazed

@@ -26,7 +26,7 @@ constexpr Cell frz{kFrozen};
 
 /// kinovazed.state.table. Columns are the verbs, in their order: EStop, QuitEStop, Initialize,
 /// Unfold, Retract, Freeze, Unfreeze, SetJoystickMode, MoveJoystick, RunObjective.
-constexpr std::array<std::array<Cell, kMachineVerbs>, kStateNames.size()> kCommands{{
+constexpr decltype(Machine::commands) kCommands{{
     {stop, off, r, r, r, r, r, r, r, r},            // emergencyStopped
     {stop, off, ini, r, r, r, r, r, r, r},          // poweredOff
     {stop, r, r, r, r, r, r, r, r, r},              // initializing
@@ -40,14 +40,8 @@ constexpr std::array<std::array<Cell, kMachineVerbs>, kStateNames.size()> kComma
     {stop, r, r, r, r, r, idle, r, r, r},    // frozen
 }};
 
-struct ArmRow {
-  ArmEvent event;
-  State state;
-  ArmReaction reaction;
-};
-
 /// kinovazed.event.table.
-constexpr std::array kArmRows{
+constexpr decltype(Machine::arm) kArmRows{
     ArmRow{ArmEvent::kInitialized, kInitializing, {kIdle, Event::kInitialized}},
     ArmRow{ArmEvent::kHomeReached, kUnfolding, {kIdle, Event::kUnfolded}},
     ArmRow{ArmEvent::kRetractionReached, kRetracting, {kRetracted, Event::kRetracted}},
@@ -57,36 +51,23 @@ constexpr std::array kArmRows{
     ArmRow{ArmEvent::kLastPointReached, kRunningSequence, {kIdle, Event::kObjectiveDone}},
 };
 
+/// kinovazed.beat.values. In the order of `State`.
+constexpr decltype(Machine::flags) kFlags{
+    beat::kEmergencyStop, 0, 0, beat::kIdle,           0,
+    beat::kRetracted,     0, 0, beat::kInJoystickMode, beat::kRunningObjective,
+    beat::kFreezed};
+
+constexpr Machine kShipped{kCommands, kArmRows, kFlags};
+
 }  // namespace
 
-std::optional<State> next_state(State state, Verb verb) noexcept {
-  return kCommands[static_cast<std::size_t>(state)][static_cast<std::size_t>(verb)];
-}
+const Machine& shipped_machine() noexcept { return kShipped; }
 
-std::optional<ArmReaction> reaction(State state, ArmEvent event) noexcept {
-  const auto row = std::ranges::find_if(kArmRows, [&](const ArmRow& candidate) {
+std::optional<ArmReaction> Machine::reaction(State state, ArmEvent event) const noexcept {
+  const auto row = std::ranges::find_if(arm, [&](const ArmRow& candidate) {
     return candidate.event == event && candidate.state == state;
   });
-  return row == kArmRows.end() ? std::nullopt : std::optional{row->reaction};
-}
-
-std::uint8_t state_flag(State state) noexcept {
-  switch (state) {
-    case kEmergencyStopped:
-      return beat::kEmergencyStop;
-    case kFrozen:
-      return beat::kFreezed;
-    case kIdle:
-      return beat::kIdle;
-    case kRunningSequence:
-      return beat::kRunningObjective;
-    case kSteering:
-      return beat::kInJoystickMode;
-    case kRetracted:
-      return beat::kRetracted;
-    default:
-      return 0;
-  }
+  return row == arm.end() ? std::nullopt : std::optional{row->reaction};
 }
 
 }  // namespace armjig::kinovazed

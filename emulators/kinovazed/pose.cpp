@@ -89,11 +89,11 @@ bool has_changed(const Pose& before, const Pose& after) noexcept {
   return false;
 }
 
-bool has_reached(const Pose& pose, const Pose& target) noexcept {
+bool has_reached(const Pose& pose, const Pose& target, const Reach& reach) noexcept {
   const auto a = components(pose);
   const auto b = components(target);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    if (std::abs(a[i] - b[i]) >= (i < 3 ? kNear : kNearAngle)) return false;
+    if (std::abs(a[i] - b[i]) >= (i < 3 ? reach.metres : reach.radians)) return false;
   }
   return true;
 }

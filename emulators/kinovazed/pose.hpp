@@ -39,8 +39,14 @@ struct Frame {
 /// Whether any component differs by 0.00001 or more.
 [[nodiscard]] bool has_changed(const Pose& before, const Pose& after) noexcept;
 
-/// Within 0.05 m and 0.25 rad in each component; angles as plain numbers
-/// (kinovazed.objective.no-wrap).
-[[nodiscard]] bool has_reached(const Pose& pose, const Pose& target) noexcept;
+/// How near to a target counts as there, in each component.
+struct Reach {
+  float metres = 0.05F;
+  float radians = 0.25F;
+};
+
+/// Nearer than `reach`; angles as plain numbers (kinovazed.objective.no-wrap).
+[[nodiscard]] bool has_reached(const Pose& pose, const Pose& target,
+                               const Reach& reach = {}) noexcept;
 
 }  // namespace armjig::kinovazed

@@ -151,7 +151,7 @@ bool Server::run_worker(Instant limit) {
 void Server::start_listening() {
   life_ = Life::kRunning;
   listening_since_ = now_;
-  beat_due_ = now_ + pace::kBeat;
+  beat_due_ = now_ + options_.behaviour.beat_period;
 }
 
 void Server::run(Task task) {
@@ -243,8 +243,8 @@ void Server::say(Event event) {
 }
 
 void Server::say_heartbeat() {
-  beat_due_ = now_ + pace::kBeat;
-  Heartbeat heartbeat{state_flag(state_)};
+  beat_due_ = now_ + options_.behaviour.beat_period;
+  Heartbeat heartbeat{options_.machine.flag(state_)};
   if (worker_.is_arm_well()) heartbeat.flags |= beat::kConnected;
   if (is_initialized_) heartbeat.flags |= beat::kInitialized;
   if (is_connected_) tasks_.push_back({Task::Kind::kPush, false, encode(heartbeat)});
@@ -280,7 +280,7 @@ void Server::on_event(ArmEvent event) {
   const bool is_last = course && course->next >= course->path.points.size();
   if (event == ArmEvent::kPointReached && is_last) event = ArmEvent::kLastPointReached;
   said_by_arm_.reset();
-  const auto reacts = reaction(state_, event);
+  const auto reacts = options_.machine.reaction(state_, event);
   if (event == ArmEvent::kInitialized) is_initialized_ = reacts.has_value();
   if (!reacts) {
     // kinovazed.retract.while-initializing

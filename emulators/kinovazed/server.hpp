@@ -25,6 +25,7 @@ enum class OnDeath : std::uint8_t {
 
 struct ServerOptions {
   Behaviour behaviour = kFirmwareBehaviour;
+  Machine machine = shipped_machine();
   ObjectiveSet objectives = published_objectives();
   Duration call_time = std::chrono::microseconds{600};  ///< of every call to the arm
   RaceOrder race = RaceOrder::kReplyFirst;

@@ -68,7 +68,7 @@ void Server::decide() {
   if (repeats()) return;
   if (command_.verb == Verb::kRunObjective && !take_course()) return;
   const auto from = state_;
-  const auto next = next_state(from, command_.verb);
+  const auto next = options_.machine.next_state(from, command_.verb);
   if (!next) return say(Event::kRejected);
   state_ = *next;
   if (command_.verb == Verb::kEStop) is_initialized_ = false;
@@ -92,7 +92,7 @@ bool Server::repeats() {
   }
   const bool is_current_at_once =
       command_.verb == Verb::kRunObjective && command_.objective == Objective::kCurrent &&
-      !options_.behaviour.moves_for_current && next_state(state_, command_.verb);
+      !options_.behaviour.moves_for_current && options_.machine.next_state(state_, command_.verb);
   if (!is_current_at_once) return false;
   state_ = State::kIdle;
   led_to_idle_ = Verb::kRunObjective;
@@ -163,7 +163,7 @@ bool Server::take_course() {
     behaviour.dies ? die() : say(Event::kRejected);
     return false;
   }
-  const bool is_accepted = next_state(state_, command_.verb).has_value();
+  const bool is_accepted = options_.machine.next_state(state_, command_.verb).has_value();
   if (is_accepted || behaviour.shares_objective) course_ = running_course_ = std::move(course);
   return true;
 }

@@ -12,7 +12,6 @@ constexpr std::uint16_t kLongPressMs = 200;   // from mode 4: the arm overlooks 
 constexpr std::uint16_t kReopenPauseMs = 50;  // between attempts to open the arm again
 constexpr int kStartAttempts = 120;
 constexpr float kHighestCurrent = 4.5F;  // ampere, all joints together
-constexpr float kUnitsPerFull = 0.0025F;
 
 std::chrono::milliseconds milliseconds(std::uint16_t count) noexcept {
   return std::chrono::milliseconds{count};
@@ -289,8 +288,8 @@ void Worker::on_call(Step step) {
         plant.select(call_of(step) == ArmCall::kSelectAngular ? Control::kAngular
                                                               : Control::kCartesian);
         // kinovazed.mode.guard: a second change within half a second is fatal.
-        if (job_->mode != Mode::kNoMode && mode_set_ && now_ - *mode_set_ < pace::kModeSettles &&
-            behaviour_.dies) {
+        if (job_->mode != Mode::kNoMode && mode_set_ &&
+            now_ - *mode_set_ < behaviour_.mode_settles && behaviour_.dies) {
           die();
         }
         return;
@@ -384,7 +383,7 @@ void Worker::take_pose(const Pose& pose) {
   if (is_new) pose_ = pose;
   has_pose_ = true;
   if (!is_new && behaviour_.needs_change_to_reach) return;
-  if (movement_ != Movement::kToTarget || !has_reached(pose_, target_)) return;
+  if (movement_ != Movement::kToTarget || !has_reached(pose_, target_, behaviour_.reach)) return;
   movement_ = Movement::kNone;
   push_event(ArmEvent::kPointReached);
   push_pause(kPauseMs);
@@ -417,7 +416,7 @@ void Worker::take_mode(ArmMode mode) {
 }
 
 void Worker::check_settling() {
-  if (!is_settling_ || now_ - *mode_set_ < pace::kModeSettles) return;
+  if (!is_settling_ || now_ - *mode_set_ < behaviour_.mode_settles) return;
   is_settling_ = false;
   push_event(ArmEvent::kModeChanged);
 }
@@ -465,9 +464,10 @@ Stick Worker::stick_of(const Deflection& deflection) const noexcept {
   const auto allowed = bounded(deflection);
   // kinovazed.joystick.int-min: the most negative number keeps its sign.
   const auto negated = [](std::int32_t value) { return value == INT32_MIN ? value : -value; };
-  const std::array<float, 3> axes{static_cast<float>(negated(allowed.x)) * kUnitsPerFull,
-                                  static_cast<float>(negated(allowed.y)) * kUnitsPerFull,
-                                  static_cast<float>(allowed.z) * kUnitsPerFull};
+  const std::array<float, 3> axes{
+      static_cast<float>(negated(allowed.x)) * behaviour_.units_per_full,
+      static_cast<float>(negated(allowed.y)) * behaviour_.units_per_full,
+      static_cast<float>(allowed.z) * behaviour_.units_per_full};
   switch (joystick_mode_) {
     case Mode::kXyz:
     case Mode::kAxis1to3:

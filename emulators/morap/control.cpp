@@ -37,17 +37,17 @@ float filtered(const Coefficients& numerator, const std::array<float, kMostCoeff
   return sum;
 }
 
-float clamp_voltage(float volts) noexcept {
-  if (volts > kVoltageLimit) return kVoltageLimit;
-  return volts < -kVoltageLimit ? -kVoltageLimit : volts;
+float clamp_voltage(float volts, const Law& law) noexcept {
+  if (volts > law.voltage_limit) return law.voltage_limit;
+  return volts < -law.voltage_limit ? -law.voltage_limit : volts;
 }
 
 }  // namespace
 
-Level level_of(float volts) noexcept {
+Level level_of(float volts, const Law& law) noexcept {
   if (std::isnan(volts)) return kZeroVolts;
-  const float duty = 0.5F * clamp_voltage(volts) / kSupply + 0.5F;
-  return static_cast<Level>(4.0F * duty * 256.0F + 0.5F);
+  const float duty = 0.5F * clamp_voltage(volts, law) / kSupply + 0.5F;
+  return static_cast<Level>(4.0F * duty * 256.0F + law.rounding);
 }
 
 float volts_of(Level level) noexcept {
@@ -93,15 +93,16 @@ Cycles tick_period(std::uint16_t rate_hz) noexcept {
   return Cycles{65536} * 256;
 }
 
-void FeedbackLoop::reset(ControllerKind kind, float angle, float reference) noexcept {
+void FeedbackLoop::reset(ControllerKind kind, float angle, float reference,
+                         const Law& law) noexcept {
   *this = FeedbackLoop{};
-  if (kind == ControllerKind::kPosition) y_.fill(angle);
-  r_.fill(reference);
+  if (kind == ControllerKind::kPosition && law.begins_with_angle) y_.fill(angle);
+  if (law.begins_with_reference) r_.fill(reference);
   last_angle_ = angle;
 }
 
-float FeedbackLoop::step(const ControllerSet& set, const Scale& scale, float angle,
-                         float reference) noexcept {
+float FeedbackLoop::step(const ControllerSet& set, const Scale& scale, float angle, float reference,
+                         const Law& law) noexcept {
   const float ts = 1.0F / static_cast<float>(set.rate_hz);
   const float turned = (angle - last_angle_) / ts;
   push(y_, set.kind == ControllerKind::kPosition ? angle : turned);
@@ -109,13 +110,15 @@ float FeedbackLoop::step(const ControllerSet& set, const Scale& scale, float ang
   const float feedback = filtered(set.d, y_, set.f, feedback_);
   const float feedforward = filtered(set.c, r_, set.f, feedforward_);
   // Both integrators stand still after a sample with a limited output, and for a negative gain.
-  if (set.integral > 0.0F && !is_saturated_) {
+  const bool is_held = is_saturated_ && law.holds_integrators;
+  if ((set.integral > 0.0F || law.integrates_negative_gain) && !is_held) {
     feedforward_integral_ += set.integral * r_[0];
     feedback_integral_ += set.integral * y_[0];
   }
   const float wanted = (feedforward + feedforward_integral_) - (feedback + feedback_integral_);
-  speed_ = 0.2F * turned + 0.8F * speed_;
-  const float volts = scale.limit_current(clamp_voltage(wanted), speed_);
+  speed_ = law.newest_speed_share * turned + law.older_speed_share * speed_;
+  const float possible = clamp_voltage(wanted, law);
+  const float volts = law.limits_loops ? scale.limit_current(possible, speed_) : possible;
   is_saturated_ = volts != wanted;
   push(feedback_, feedback);
   push(feedforward_, feedforward);

@@ -13,8 +13,33 @@
 /// are computed once.
 namespace armjig::morap {
 
-/// Of the output, V. The power stage could do 24.
-inline constexpr float kVoltageLimit = 20.0F;
+/// The figures and habits by which a node controls its motor. These are the firmware's; a node with
+/// others is a faulty one (defects/).
+struct Law {
+  float voltage_limit = 20.0F;      ///< of the output, V; the power stage could do 24
+  float rounding = 0.5F;            ///< levels added before the fraction is cut off
+  float newest_speed_share = 0.2F;  ///< in the speed that limits the current of a loop
+  float older_speed_share = 0.8F;
+  std::uint16_t idle_rate_hz = 200;       ///< also of the voltage and torque modes
+  bool delays_output = true;              ///< of a loop, by one tick
+  bool limits_loops = true;               ///< to the rated current
+  bool bounds_voltage_above = true;       ///< likewise
+  bool bounds_voltage_below = true;       ///< where a lower voltage would brake too hard
+  bool limits_torque = true;              ///< to the rated current
+  bool limits_direct_voltage = false;     ///< the direct mode has no current limit
+  bool compensates_motion = true;         ///< in torque mode adds the back-EMF
+  bool holds_integrators = true;          ///< after a sample with a limited output
+  bool integrates_negative_gain = false;  ///< a negative gain is none
+  bool resets_with_mode = true;           ///< a loop begins anew when the mode changes
+  bool resets_with_parameters = true;     ///< and when parameters were installed
+  bool resets_with_reference = false;     ///< but not with a new reference
+  bool begins_with_reference = true;      ///< as if it had always been there
+  bool begins_with_angle = true;          ///< as if the shaft had always stood there
+  bool runs_uncalibrated = false;         ///< without calibration nothing is driven
+  bool waits_with_parameters = true;      ///< new ones are used from the next tick on
+  bool acts_at_ticks = true;              ///< and so is a new reference or mode
+  bool changes_rate = true;               ///< the tick follows the rate of the loop
+};
 
 /// A duty cycle as the node sets it: 0 to 1024, 512 is 0 V, a step 46.875 mV.
 using Level = std::uint16_t;
@@ -22,7 +47,7 @@ inline constexpr Level kZeroVolts = 512;
 
 /// Limits to 20 V and rounds to a level. A voltage that is no number gives 0 V; what a real node
 /// makes of one is not known.
-[[nodiscard]] Level level_of(float volts) noexcept;
+[[nodiscard]] Level level_of(float volts, const Law& law = {}) noexcept;
 [[nodiscard]] float volts_of(Level level) noexcept;
 
 /// The figures that a node derives from its motor.
@@ -51,11 +76,11 @@ struct Scale {
 class FeedbackLoop {
  public:
   /// Forgets everything; the shaft is at `angle`.
-  void reset(ControllerKind kind, float angle, float reference) noexcept;
+  void reset(ControllerKind kind, float angle, float reference, const Law& law = {}) noexcept;
 
   /// One sample. The voltage before rounding; counts above four in `set` act as four.
   [[nodiscard]] float step(const ControllerSet& set, const Scale& scale, float angle,
-                           float reference) noexcept;
+                           float reference, const Law& law = {}) noexcept;
 
  private:
   using History = std::array<float, kMostCoefficients>;  ///< newest first

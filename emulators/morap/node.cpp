@@ -10,8 +10,7 @@
 namespace armjig::morap {
 namespace {
 
-constexpr std::uint16_t kIdleRate = 200;  // Hz; also of the voltage and torque modes
-constexpr float kIdlePeriod = 1.0F / 200.0F;
+constexpr float kIdlePeriod = 1.0F / 200.0F;  // s; by which voltage and torque modes reckon
 constexpr std::uint16_t kFullScale = 4095;
 
 bool has_count(const ControllerSet& set, auto is_it) noexcept {
@@ -86,7 +85,7 @@ void Node::restart(Instant time) noexcept {
   ram_ = Ram{};
   ram_.position_set = setup_.eeprom.position;
   ram_.speed_set = setup_.eeprom.speed;
-  tick_period_ = tick_period(kIdleRate);
+  tick_period_ = tick_period(setup_.law.idle_rate_hz);
   next_tick_ = is_on_bus_ ? now + tick_period_ : kNever;
   set_encoder_count(0);
   connect_plant();
@@ -153,9 +152,8 @@ void Node::handle(std::byte byte) noexcept {
       return handle_program(byte);
     case kDefaultControllers:
       if (ram_.count != 0) return;
-      ram_.pending = Pending::kDefaults;
       ram_.programming = ProgrammingStatus::kNothing;
-      return;
+      return await_tick(Pending::kDefaults);
     case kTune:
       return handle_tune(byte);
     default:
@@ -174,6 +172,7 @@ void Node::apply_float(float value) noexcept {
   switch (ram_.id) {
     case CommandId::kPosition:
       ram_.position = value;
+      if (setup_.law.resets_with_reference) ram_.resets = true;
       return set_mode(Mode::kPosition);
     case CommandId::kSpeed:
       ram_.speed = value;
@@ -211,7 +210,7 @@ void Node::handle_program(std::byte byte) noexcept {
     return;
   }
   ram_.programming = ProgrammingStatus::kSuccess;
-  ram_.pending = Pending::kStaged;
+  await_tick(Pending::kStaged);
 }
 
 void Node::handle_tune(std::byte byte) noexcept {
@@ -226,12 +225,18 @@ void Node::handle_tune(std::byte byte) noexcept {
   ram_.programming = set ? ProgrammingStatus::kSuccess : ProgrammingStatus::kFailure;
   if (!set) return;
   ram_.staging = *set;
-  ram_.pending = Pending::kStaged;
+  await_tick(Pending::kStaged);
+}
+
+void Node::await_tick(Pending pending) noexcept {
+  ram_.pending = pending;
+  if (!setup_.law.waits_with_parameters) install_pending();
 }
 
 void Node::set_mode(Mode mode) noexcept {
   ram_.mode = mode;
   if (mode != Mode::kDisabled) set_brake(false);
+  if (!setup_.law.acts_at_ticks) act();
 }
 
 /// Shorts the leads of a motor that is not driven. Takes effect at the next tick.
@@ -317,17 +322,21 @@ void Node::install_pending() noexcept {
 
 /// The rate follows the mode, even while nothing is driven.
 void Node::enter_mode() noexcept {
-  auto rate = kIdleRate;
+  auto rate = setup_.law.idle_rate_hz;
   if (ram_.mode == Mode::kPosition) rate = ram_.position_set.rate_hz;
   if (ram_.mode == Mode::kSpeed) rate = ram_.speed_set.rate_hz;
   if (rate == 0) note(Undefined::kZeroRate);
-  tick_period_ = tick_period(rate);
-  ram_.resets = true;
+  if (setup_.law.changes_rate) tick_period_ = tick_period(rate);
+  const bool is_new_mode = ram_.mode != ram_.last_mode;
+  if (is_new_mode ? setup_.law.resets_with_mode : setup_.law.resets_with_parameters) {
+    ram_.resets = true;
+  }
   ram_.last_mode = ram_.mode;
 }
 
 void Node::act() noexcept {
-  if (!ram_.is_calibrated || ram_.mode == Mode::kDisabled) {
+  const bool may_run = ram_.is_calibrated || setup_.law.runs_uncalibrated;
+  if (!may_run || ram_.mode == Mode::kDisabled) {
     ram_.drive = {ram_.is_braked ? Bridge::kShorted : Bridge::kOpen, kZeroVolts};
     return connect_plant();
   }
@@ -341,15 +350,24 @@ void Node::act() noexcept {
       break;
     case Mode::kVoltage: {
       const float speed = turned_since(ram_.voltage_mode_angle) / kIdlePeriod;
-      drive(scale_.limit_current(ram_.voltage, speed));
+      const float limited_voltage = scale_.limit_current(ram_.voltage, speed);
+      const bool is_raised = limited_voltage > ram_.voltage;
+      const bool obeys =
+          is_raised ? setup_.law.bounds_voltage_below : setup_.law.bounds_voltage_above;
+      drive(obeys ? limited_voltage : ram_.voltage);
       break;
     }
     case Mode::kDirectVoltage:
-      drive(ram_.voltage);
+      drive(setup_.law.limits_direct_voltage ? scale_.limit_current(ram_.voltage, 0.0F)
+                                             : ram_.voltage);
       break;
     case Mode::kTorque: {
-      const float induced = scale_.back_emf * turned_since(ram_.torque_mode_angle) / kIdlePeriod;
-      drive(induced + scale_.resistance * limited(ram_.current, scale_.rated_current));
+      const float turned = turned_since(ram_.torque_mode_angle);
+      const float induced =
+          setup_.law.compensates_motion ? scale_.back_emf * turned / kIdlePeriod : 0.0F;
+      const float current =
+          setup_.law.limits_torque ? limited(ram_.current, scale_.rated_current) : ram_.current;
+      drive(induced + scale_.resistance * current);
       break;
     }
     case Mode::kDisabled:
@@ -363,15 +381,22 @@ void Node::run_loop(const ControllerSet& set, float reference) noexcept {
   if (has_count(set, [](auto count) { return count == 0; })) note(Undefined::kEmptyFilter);
   if (has_count(set, is_above_four)) note(Undefined::kCountAboveFour);
   const float now = angle();
-  if (std::exchange(ram_.resets, false)) ram_.loop.reset(set.kind, now, reference);
-  ram_.delayed = rounded(ram_.loop.step(set, scale_, now, reference));
+  if (std::exchange(ram_.resets, false)) {
+    ram_.loop.reset(set.kind, now, reference, setup_.law);
+  }
+  const auto level = rounded(ram_.loop.step(set, scale_, now, reference, setup_.law));
+  if (setup_.law.delays_output) {
+    ram_.delayed = level;
+  } else {
+    ram_.drive.level = level;
+  }
 }
 
 void Node::drive(float volts) noexcept { ram_.drive.level = rounded(volts); }
 
 Level Node::rounded(float volts) noexcept {
   if (std::isnan(volts)) note(Undefined::kConversion);
-  return level_of(volts);
+  return level_of(volts, setup_.law);
 }
 
 /// Radians since the last tick of the mode that keeps `last_angle`.

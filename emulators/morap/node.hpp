@@ -43,6 +43,7 @@ struct NodeSetup {
   Profile profile = kFirmware;
   double shunt_ohm = 820;   ///< of the current sense; the firmware believes 820
   Duration tune_stretch{};  ///< how long the clock is held while the tuner computes
+  Law law{};
 };
 
 /// A motor node with its firmware, motor and load: an `EmulatedBusDevice`. On one instant the plant
@@ -75,6 +76,8 @@ class Node {
   [[nodiscard]] std::uint8_t address() const noexcept { return node_address(setup_.eeprom.node); }
   [[nodiscard]] MotorStatus status() const noexcept;
   [[nodiscard]] ProgrammingStatus programming_status() const noexcept { return ram_.programming; }
+  /// What a read answers now.
+  [[nodiscard]] CommandId selected() const noexcept { return ram_.selected; }
   [[nodiscard]] const ControllerSet& position_set() const noexcept { return ram_.position_set; }
   [[nodiscard]] const ControllerSet& speed_set() const noexcept { return ram_.speed_set; }
   [[nodiscard]] const Drive& output() const noexcept { return ram_.drive; }
@@ -106,6 +109,7 @@ class Node {
   void apply_float(float value) noexcept;
   void handle_program(std::byte byte) noexcept;
   void handle_tune(std::byte byte) noexcept;
+  void await_tick(Pending pending) noexcept;
   void set_mode(Mode mode) noexcept;
   void set_brake(bool is_on) noexcept;
   [[nodiscard]] bool is_known() const noexcept;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
@@ -84,6 +85,13 @@ class BusPort {
   /// Lets time pass.
   virtual void wait_until(Instant time) = 0;
   [[nodiscard]] virtual Instant now() const = 0;
+
+  /// As `StreamPort::touch`: does at a device what the bus cannot. False: nobody could.
+  [[nodiscard]] virtual bool touch(std::string_view input, std::int64_t value) {
+    (void)input;
+    (void)value;
+    return false;
+  }
 };
 
 }  // namespace armjig

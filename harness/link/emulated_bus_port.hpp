@@ -36,6 +36,13 @@ class EmulatedBusPort final : public BusPort {
   }
   void wait_until(Instant time) override { now_ = std::max(now_, time); }
   [[nodiscard]] Instant now() const override { return now_; }
+  /// For buses that have `set_input(time, name, value)`.
+  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
+    if constexpr (requires { bus_.set_input(now_, input, value); }) {
+      return bus_.set_input(now_, input, value);
+    }
+    return BusPort::touch(input, value);
+  }
   [[nodiscard]] Bus& bus() noexcept { return bus_; }
 
  private:

@@ -13,8 +13,8 @@
 namespace armjig {
 namespace {
 
-constexpr std::array<std::string_view, kHazardCount> kHazards{"observe", "state", "move", "home",
-                                                              "grip"};
+constexpr std::array<std::string_view, kHazardCount> kHazards{"observe", "state",   "move", "home",
+                                                              "grip",    "program", "crash"};
 constexpr std::array kJudges{
     JudgeEntry{"demo", demo::make_judge},
     JudgeEntry{"kinovazed", kinovazed::make_judge},
@@ -46,7 +46,8 @@ Outcome<Permissions> parse_permissions(std::string_view text) {
     const auto found = std::ranges::find(kHazards, word);
     if (found == kHazards.end()) {
       return problem(ErrorCode::kBadValue, "--allow " + std::string{text},
-                     "choose from state, move, home, grip with commas between them, or all");
+                     "choose from state, move, home, grip, program, crash with commas between "
+                     "them, or all");
     }
     permissions.add(static_cast<Hazard>(found - kHazards.begin()));
     rest = end == std::string_view::npos ? "" : rest.substr(end + 1);

@@ -23,8 +23,10 @@ enum class Hazard : std::uint8_t {
   kMove,
   kHome,  ///< moves far, to switches that have to work
   kGrip,
+  kProgram,  ///< changes parameters that outlast the program
+  kCrash,  ///< ends or hangs the device's program; somebody may have to start it again
 };
-inline constexpr std::size_t kHazardCount = 5;
+inline constexpr std::size_t kHazardCount = 7;
 
 [[nodiscard]] std::string_view to_string(Hazard hazard) noexcept;
 
@@ -52,7 +54,8 @@ class Permissions {
   unsigned bits_ = bit(Hazard::kObserve);
 };
 
-/// Reads `--allow`: `state,move,home,grip` in any choice, or `all`. Problems: `kBadValue`.
+/// Reads `--allow`: `state,move,home,grip,program,crash` in any choice, or `all`. Problems:
+/// `kBadValue`.
 [[nodiscard]] Outcome<Permissions> parse_permissions(std::string_view text);
 
 /// Why something may not be written.

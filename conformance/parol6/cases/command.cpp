@@ -16,6 +16,8 @@ using namespace std::chrono_literals;
 constexpr std::size_t kJ5 = 4;
 constexpr int kSpeed = 500;
 constexpr Duration kWhile = 100ms;
+/// Half of what a supervisor waits before it stops an arm whose program is silent.
+constexpr Duration kSilence = 250ms;
 
 CommandFrame a_jog() { return jog(kJ5, kSpeed); }
 
@@ -42,8 +44,8 @@ void still_at_start(BoardBench& board) {
 
 void sticky(BoardBench& board) {
   const auto before = run(board, a_jog(), 0ms).after;
-  board.pause(400ms);
-  board.about("400 ms after the only frame of a jog");
+  board.pause(kSilence);
+  board.about("250 ms after the only frame of a jog");
   expect_speed(board, {before, board.ask(a_jog())}, kJ5, kSpeed);
   board.act(idle());
 }
@@ -56,8 +58,8 @@ CommandFrame with_timeout(CommandFrame frame, int milliseconds) {
 void timeout_ignored(BoardBench& board) {
   const auto frame = with_timeout(a_jog(), 20);
   const auto before = run(board, frame, 0ms).after;
-  board.pause(400ms);
-  board.about("400 ms after a jog with a timeout of 20 ms");
+  board.pause(kSilence);
+  board.about("250 ms after a jog with a timeout of 20 ms");
   expect_speed(board, {before, board.ask(frame)}, kJ5, kSpeed);
   board.act(idle());
 }
@@ -65,23 +67,23 @@ void timeout_ignored(BoardBench& board) {
 void timeout_stops(BoardBench& board) {
   const auto frame = with_timeout(a_jog(), 100);
   const auto before = run(board, frame, 0ms).after;
-  board.pause(400ms);
+  board.pause(kSilence);
   const auto after = board.ask(frame);
-  board.about("400 ms after a jog with a timeout of 100 ms");
+  board.about("250 ms after a jog with a timeout of 100 ms");
   board.expect_between(after, "position.j5", before.position[kJ5].value + 40,
                        before.position[kJ5].value + 60);
   board.act(idle());
   const auto forever = run(board, with_timeout(a_jog(), 0), 0ms).after;
-  board.pause(400ms);
-  board.about("400 ms after a jog without a timeout");
+  board.pause(kSilence);
+  board.about("250 ms after a jog without a timeout");
   expect_speed(board, {forever, board.ask(a_jog())}, kJ5, kSpeed);
   board.act(idle());
 }
 
 void timeout_reported(BoardBench& board) {
   board.expect(board.act(with_timeout(idle(), 100)), "timeout_error", 0);
-  board.pause(400ms);
-  board.about("400 ms after a timeout of 100 ms");
+  board.pause(kSilence);
+  board.about("250 ms after a timeout of 100 ms");
   board.expect(board.ask(idle()), "timeout_error", 1);
   board.about("the answer after that");
   board.expect(board.ask(idle()), "timeout_error", 0);
@@ -245,10 +247,11 @@ void teleport(BoardBench& board) {
   expect_still(board, {rest, board.ask(idle())});
 }
 
-/// Whether frames of one write came to the board as one; a link may cut them.
+/// Whether frames of one write came to the board as one. A link may cut them, and USB does: its next
+/// packet comes 50 us later, time enough for passes in between.
 bool came_together(BoardBench& board, const std::vector<Answer>& answers) {
-  constexpr int kOneMillisecond = 703;
-  if (answers.back().timing <= kOneMillisecond) return true;
+  constexpr int kTwentyMicroseconds = 14;
+  if (answers.back().timing <= kTwentyMicroseconds) return true;
   board.leave_open("the link did not deliver two frames at once");
   return false;
 }
@@ -300,12 +303,12 @@ constexpr Case kCases[] = {
      .hazard = Hazard::kState,
      .start = kFresh},
     {.requirement = "parol6.command.sticky",
-     .rule = "One jog frame is enough for 400 ms.",
+     .rule = "One jog frame is enough for 250 ms.",
      .run = on<sticky>,
      .hazard = Hazard::kMove,
      .start = kEnabled},
     {.requirement = "parol6.command.timeout-ignored",
-     .rule = "A jog with a timeout of 20 ms goes on for 400 ms.",
+     .rule = "A jog with a timeout of 20 ms goes on for 250 ms.",
      .run = on<timeout_ignored>,
      .hazard = Hazard::kMove,
      .start = kEnabled},
@@ -315,7 +318,7 @@ constexpr Case kCases[] = {
      .hazard = Hazard::kMove,
      .start = kEnabled},
     {.requirement = "parol6.command.timeout-reported",
-     .rule = "A silence of 400 ms is an error after a timeout of 100 ms, once.",
+     .rule = "A silence of 250 ms is an error after a timeout of 100 ms, once.",
      .run = on<timeout_reported>},
     {.requirement = "parol6.command.affected-joints-ignored",
      .rule = "J5 jogs with four values of affected_joints.",

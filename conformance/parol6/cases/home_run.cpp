@@ -93,11 +93,11 @@ void waits_for_turn(BoardBench& board) {
 
 void zero_at_switch(BoardBench& board) {
   for (const auto joint : {kJ1, kJ2, kJ3}) {
-    const auto waiting = record(board).with_speed(kNoneHomed, joint, 0);
     // At rest it is at its switch, or at the end of its final move.
     constexpr int kFinal[] = {13'500, 19'588, 23'020};
-    for (const auto& answer : waiting) {
-      if (position(answer, joint) == kFinal[joint]) continue;
+    for (const auto& answer : record(board).with_bits(kNoneHomed)) {
+      const bool waits = answer.speed[joint].value == 0 && position(answer, joint) != kFinal[joint];
+      if (!waits) continue;
       board.about("a joint that waits for the others");
       board.expect(answer, position_field(joint), 0);
     }

@@ -178,11 +178,11 @@ void unlimited(BoardBench& board) {
 void no_catch_up(BoardBench& board) {
   board.act(jog(kJ5, 100));
   board.act(with_code(42));
-  board.pause(450ms);
+  board.pause(250ms);
   const auto before = board.act(jog(kJ5, 100));
   const auto after = board.ask(jog(kJ5, 100));
   board.act(idle());
-  board.about("a jog at 100 steps/s that has paused for 450 ms");
+  board.about("a jog at 100 steps/s that has paused for 250 ms");
   const auto most = 2 + (after.received - before.asked) / 10ms;
   board.expect_between(after, "position.j5", before.position[kJ5].value,
                        before.position[kJ5].value + most);

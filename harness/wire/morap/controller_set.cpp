@@ -2,7 +2,7 @@
 #include "harness/wire/morap/controller_set.hpp"
 
 #include <cassert>
-#include <numeric>
+#include <cstring>
 
 namespace armjig::morap {
 namespace {
@@ -49,10 +49,19 @@ std::size_t wire_size(const ControllerSet& set) noexcept {
   return kSmallestSetSize + kFloatSize * (std::size_t{set.d.count} + set.c.count + set.f.count);
 }
 
+/// 256 is 1 modulo 255, so that words fold to what their bytes do, in any order of bytes; and
+/// nothing folds to 0 but 0.
 std::uint8_t checksum(Bytes payload) noexcept {
-  auto sum = std::accumulate(payload.begin(), payload.end(), 0U, [](unsigned total, std::byte b) {
-    return total + std::to_integer<unsigned>(b);
-  });
+  std::uint64_t sum = 0;
+  for (; payload.size() >= sizeof(std::uint32_t);
+       payload = payload.subspan(sizeof(std::uint32_t))) {
+    std::uint32_t word{};
+    std::memcpy(&word, payload.data(), sizeof word);
+    sum += word;
+  }
+  for (const auto byte : payload) sum += std::to_integer<std::uint64_t>(byte);
+  sum = (sum >> 32) + (sum & 0xFFFFFFFF);
+  sum = (sum >> 16) + (sum & 0xFFFF);
   while (sum > 0xFF) sum = (sum >> 8) + (sum & 0xFF);
   return static_cast<std::uint8_t>(~sum);
 }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/bench.hpp"
+#include "harness/core/bytes.hpp"
+#include "harness/link/bus_port.hpp"
+#include "harness/wire/dissector.hpp"
+
+namespace armjig {
+
+/// A conversation with devices on an I2C bus. The same calls mean the same in virtual and in real
+/// time. Once a case is decided, or the port has failed, nothing passes and no time goes by.
+class BusBench : public Bench {
+ public:
+  BusBench(std::unique_ptr<BusPort> port, const DissectorEntry& device);
+
+  enum class End : std::uint8_t {
+    kStop,
+    kOpen,  ///< the next transaction begins with a repeated start
+  };
+
+  /// What was acknowledged of a write.
+  struct Written {
+    bool is_addressed = false;
+    std::size_t refused = 0;  ///< bytes without acknowledgement
+
+    [[nodiscard]] bool is_whole() const noexcept { return is_addressed && refused == 0; }
+  };
+  Written write(BusAddress address, Bytes bytes, End end = End::kStop);
+
+  /// None if nobody is there.
+  std::optional<std::vector<std::byte>> read(BusAddress address, std::size_t size,
+                                             End end = End::kStop);
+
+  /// Reads a byte, lets `between` happen, and reads the rest; for devices in memory.
+  template <class Between>
+  std::vector<std::byte> read_around(BusAddress address, std::size_t size, Between between);
+
+  void pause(Duration duration);
+  void pause_until(Instant time);
+
+  /// Does at the device what its link cannot: an input, the power. Skips the case where nobody can.
+  void touch(std::string_view input, std::int64_t value);
+
+  [[nodiscard]] Instant now() const override { return port_->now(); }
+  [[nodiscard]] const std::optional<Error>& error() const override { return error_; }
+  [[nodiscard]] std::string last_exchange() const override;
+
+ protected:
+  void forget_exchange() override { exchange_.clear(); }
+  [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over(); }
+
+ private:
+  /// The value, or nothing once the port has failed.
+  template <class T>
+  std::optional<T> taken(Result<T> result);
+  bool connect(BusAddress address, BusPort::Access access);
+  void finish(End end);
+  void remember(std::byte head, Bytes bytes);
+
+  std::unique_ptr<BusPort> port_;
+  std::unique_ptr<Dissector> dissector_;
+  std::deque<Message> exchange_;
+  std::optional<Error> error_;
+};
+
+template <class Between>
+std::vector<std::byte> BusBench::read_around(BusAddress address, std::size_t size,
+                                             Between between) {
+  std::vector<std::byte> bytes;
+  if (is_deaf() || !connect(address, BusPort::Access::kRead)) return bytes;
+  for (std::size_t i = 0; i < size && !error_; ++i) {
+    if (i == 1) between();
+    const auto byte = taken(port_->read(i + 1 < size ? Ack::kAck : Ack::kNack));
+    bytes.push_back(byte.value_or(std::byte{}));
+  }
+  finish(End::kStop);
+  return bytes;
+}
+
+}  // namespace armjig

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "conformance/kinovazed/chapters.hpp"
+#include "conformance/kinovazed/server_bench.hpp"
+#include "conformance/kinovazed/ways.hpp"
+
+namespace armjig::kinovazed {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace std::string_view_literals;
+using enum State;
+
+/// EStop comes in any state, and what it ended is not told.
+template <State state>
+void estop(ServerBench& server) {
+  enter(server, state);
+  server.accept("EStop");
+  server.expect_beat(3);
+}
+
+/// All of them, one after the other.
+void refuse_all(ServerBench& server, std::span<const std::string_view> commands) {
+  for (const auto command : commands) server.refuse(command);
+}
+
+constexpr std::array kAllButStops{"Initialize"sv,
+                                  "Unfold"sv,
+                                  "Retract"sv,
+                                  "Freeze"sv,
+                                  "Unfreeze"sv,
+                                  "SetJoystickMode:Rotation"sv,
+                                  "MoveJoystick:0:0:0"sv,
+                                  "RunObjective:Home"sv};
+constexpr std::array kAllButInitialize{"Unfold"sv,
+                                       "Retract"sv,
+                                       "Freeze"sv,
+                                       "Unfreeze"sv,
+                                       "SetJoystickMode:Rotation"sv,
+                                       "MoveJoystick:0:0:0"sv,
+                                       "RunObjective:Home"sv};
+constexpr std::array kAllButEStop{"QuitEStop"sv,
+                                  "Initialize"sv,
+                                  "Unfold"sv,
+                                  "Retract"sv,
+                                  "Freeze"sv,
+                                  "Unfreeze"sv,
+                                  "SetJoystickMode:Rotation"sv,
+                                  "MoveJoystick:0:0:0"sv,
+                                  "RunObjective:Home"sv};
+constexpr std::array kNotInIdle{"Unfold"sv, "Unfreeze"sv, "MoveJoystick:0:0:0"sv, "QuitEStop"sv};
+constexpr std::array kNotInRetracted{"QuitEStop"sv,
+                                     "Initialize"sv,
+                                     "Freeze"sv,
+                                     "Unfreeze"sv,
+                                     "SetJoystickMode:Rotation"sv,
+                                     "MoveJoystick:0:0:0"sv,
+                                     "RunObjective:Home"sv};
+constexpr std::array kNotInSettingMode{"QuitEStop"sv,
+                                       "Initialize"sv,
+                                       "Unfold"sv,
+                                       "Freeze"sv,
+                                       "Unfreeze"sv,
+                                       "SetJoystickMode:Rotation"sv,
+                                       "MoveJoystick:0:0:0"sv,
+                                       "RunObjective:Home"sv};
+constexpr std::array kNotInSteering{"Initialize"sv, "Unfold"sv, "Retract"sv, "Unfreeze"sv,
+                                    "QuitEStop"sv};
+constexpr std::array kNotInRunning{"QuitEStop"sv,         "Initialize"sv, "Unfold"sv,
+                                   "Retract"sv,           "Freeze"sv,     "Unfreeze"sv,
+                                   "MoveJoystick:0:0:0"sv};
+constexpr std::array kNotInFrozen{"QuitEStop"sv,
+                                  "Initialize"sv,
+                                  "Unfold"sv,
+                                  "Retract"sv,
+                                  "SetJoystickMode:Rotation"sv,
+                                  "MoveJoystick:0:0:0"sv,
+                                  "RunObjective:Home"sv};
+
+template <State state, const auto& commands>
+void refused(ServerBench& server) {
+  enter(server, state);
+  refuse_all(server, commands);
+  server.expect_beat(beat_of(state));
+}
+
+/// Of states that end by themselves.
+template <State state, const auto& commands, Event event>
+void refused_until(ServerBench& server) {
+  enter(server, state);
+  refuse_all(server, commands);
+  server.about(std::string{to_string(event)} + " behind refused commands");
+  server.expect(event, ServerBench::kMotionTime);
+}
+
+void start(ServerBench& server) { server.expect_beat(3); }
+
+void table(ServerBench& server) {
+  for (const auto mode : kModeNames) server.refuse("SetJoystickMode:" + std::string{mode});
+  for (const auto objective : kObjectiveNames) {
+    server.refuse("RunObjective:" + std::string{objective});
+  }
+  server.expect_beat(3);
+}
+
+void stopped_estop(ServerBench& server) {
+  server.accept("EStop");
+  server.expect_beat(3);
+}
+
+void stopped_quit(ServerBench& server) {
+  server.accept("QuitEStop");
+  server.expect_beat(1);
+}
+
+void off_quit(ServerBench& server) {
+  server.accept("QuitEStop");
+  server.expect_beat(1);
+}
+
+/// The arm may be there already.
+void initialize(ServerBench& server) {
+  server.perform("Initialize", Event::kInitialized);
+  server.expect_beat(21);
+}
+
+void freeze(ServerBench& server) {
+  server.perform("Freeze", Event::kFreezed);
+  server.expect_beat(13);
+}
+
+void unfreeze(ServerBench& server) {
+  enter(server, kFrozen);
+  server.perform("Unfreeze", Event::kUnfreezed);
+  server.expect_beat(21);
+}
+
+/// What takes its time: a beat on the way, and the event behind it.
+void on_the_way(ServerBench& server, std::string_view command, int flags, Event event) {
+  server.wait_until_before_beat(kBeforeBeat);
+  server.accept(command);
+  server.expect_beat(flags);
+  server.expect(event, ServerBench::kMotionTime);
+}
+
+void retract(ServerBench& server) { on_the_way(server, "Retract", 5, Event::kRetracted); }
+void unfold(ServerBench& server) { on_the_way(server, "Unfold", 5, Event::kUnfolded); }
+void objective(ServerBench& server) {
+  on_the_way(server, kFarObjective, 37, Event::kObjectiveDone);
+}
+void mode(ServerBench& server) {
+  on_the_way(server, "SetJoystickMode:Rotation", 5, Event::kJoystickModeSet);
+}
+
+void setting_mode_retract(ServerBench& server) {
+  server.accept("SetJoystickMode:XYZ");
+  server.accept("Retract");
+  server.expect_beat(5);
+  server.expect(Event::kRetracted, ServerBench::kMotionTime);
+}
+
+void steering_move(ServerBench& server) {
+  for (const auto* move : {"MoveJoystick:4:0:0", "MoveJoystick:0:-4:4", "MoveJoystick:0:0:0"}) {
+    server.accept(move);
+  }
+  server.expect_beat(69);
+}
+
+void running_mode(ServerBench& server) {
+  server.wait_until_before_beat(kBeforeBeat + 100ms);
+  server.accept(kFarObjective);
+  server.accept("SetJoystickMode:Rotation");
+  server.expect_beat(5);
+  server.expect(Event::kJoystickModeSet);
+}
+
+void running_objective(ServerBench& server) {
+  server.wait_until_before_beat(2 * kBeforeBeat);
+  server.accept("RunObjective:Home");
+  server.accept(kFarObjective);
+  server.expect_beat(37);
+  server.expect(Event::kObjectiveDone, ServerBench::kMotionTime);
+}
+
+constexpr Case kCases[] = {
+    // First, for without EStop no other case can begin.
+    in(kEmergencyStopped, "kinovazed.state.stopped.estop", "Accepted, and beat 3.",
+       on<stopped_estop>),
+    in(kPoweredOff, "kinovazed.state.off.estop", "Accepted, and beat 3.", on<estop<kPoweredOff>>),
+    in(kInitializing, "kinovazed.state.initializing.estop", "Accepted, and beat 3.",
+       on<estop<kInitializing>>),
+    in(kIdle, "kinovazed.state.idle.estop", "Accepted, and beat 3.", on<estop<kIdle>>),
+    in(kRetracting, "kinovazed.state.retracting.estop", "Accepted, and beat 3.",
+       on<estop<kRetracting>>),
+    in(kRetracted, "kinovazed.state.retracted.estop", "Accepted, and beat 3.",
+       on<estop<kRetracted>>),
+    in(kUnfolding, "kinovazed.state.unfolding.estop", "Accepted, and beat 3.",
+       on<estop<kUnfolding>>),
+    in(kSettingMode, "kinovazed.state.setting-mode.estop", "Accepted, and beat 3.",
+       on<estop<kSettingMode>>),
+    in(kSteering, "kinovazed.state.steering.estop", "Accepted, and beat 3.", on<estop<kSteering>>),
+    in(kRunningSequence, "kinovazed.state.running.estop", "Accepted, and beat 3.",
+       on<estop<kRunningSequence>>),
+    in(kFrozen, "kinovazed.state.frozen.estop", "Accepted, and beat 3.", on<estop<kFrozen>>),
+
+    {.requirement = "kinovazed.state.start",
+     .rule = "The first beat of a fresh server says emergencyStopped.",
+     .run = on<start>,
+     .start = kFresh},
+    in(kEmergencyStopped, "kinovazed.state.table",
+       "All modes and objectives are Rejected in emergencyStopped.", on<table>),
+
+    {.requirement = "kinovazed.state.stopped.quit-estop",
+     .rule = "Accepted, and beat 1.",
+     .run = on<stopped_quit>,
+     .hazard = Hazard::kState},
+    in(kEmergencyStopped, "kinovazed.state.stopped.refused", "Eight commands, and beat 3.",
+       on<refused<kEmergencyStopped, kAllButStops>>),
+
+    in(kPoweredOff, "kinovazed.state.off.quit-estop", "Accepted, and beat 1.", on<off_quit>),
+    {.requirement = "kinovazed.state.off.initialize",
+     .rule = "Initialized, and beat 21.",
+     .run = on<initialize>,
+     .hazard = Hazard::kMove,
+     .start = kOff},
+    in(kPoweredOff, "kinovazed.state.off.refused", "Seven commands, and beat 1.",
+       on<refused<kPoweredOff, kAllButInitialize>>),
+
+    in(kInitializing, "kinovazed.state.initializing.refused", "Nine commands, then Initialized.",
+       on<refused_until<kInitializing, kAllButEStop, Event::kInitialized>>),
+
+    in(kIdle, "kinovazed.state.idle.initialize", "Initialized, and beat 21.", on<initialize>),
+    in(kIdle, "kinovazed.state.idle.retract", "Beat 5, then Retracted.", on<retract>),
+    in(kIdle, "kinovazed.state.idle.freeze", "Freezed, and beat 13.", on<freeze>),
+    in(kIdle, "kinovazed.state.idle.mode", "Beat 5, then JoystickModeSet.", on<mode>),
+    in(kIdle, "kinovazed.state.idle.objective", "Beat 37, then ObjectiveDone.", on<objective>),
+    in(kIdle, "kinovazed.state.idle.refused", "Four commands, and beat 21.",
+       on<refused<kIdle, kNotInIdle>>),
+
+    in(kRetracting, "kinovazed.state.retracting.refused", "Nine commands, then Retracted.",
+       on<refused_until<kRetracting, kAllButEStop, Event::kRetracted>>),
+
+    in(kRetracted, "kinovazed.state.retracted.unfold", "Beat 5, then Unfolded.", on<unfold>),
+    in(kRetracted, "kinovazed.state.retracted.refused", "Seven commands, and beat 133.",
+       on<refused<kRetracted, kNotInRetracted>>),
+
+    in(kUnfolding, "kinovazed.state.unfolding.refused", "Nine commands, then Unfolded.",
+       on<refused_until<kUnfolding, kAllButEStop, Event::kUnfolded>>),
+
+    in(kSettingMode, "kinovazed.state.setting-mode.retract", "Beat 5, then Retracted.",
+       on<setting_mode_retract>),
+    in(kSettingMode, "kinovazed.state.setting-mode.refused",
+       "Eight commands, then JoystickModeSet.",
+       on<refused_until<kSettingMode, kNotInSettingMode, Event::kJoystickModeSet>>),
+
+    in(kSteering, "kinovazed.state.steering.freeze", "Freezed, and beat 13.", on<freeze>),
+    in(kSteering, "kinovazed.state.steering.mode", "Beat 5, then JoystickModeSet.", on<mode>),
+    in(kSteering, "kinovazed.state.steering.move", "Three moves are Accepted, and beat 69.",
+       on<steering_move>),
+    in(kSteering, "kinovazed.state.steering.objective", "Beat 37, then ObjectiveDone.",
+       on<objective>),
+    in(kSteering, "kinovazed.state.steering.refused", "Five commands, and beat 69.",
+       on<refused<kSteering, kNotInSteering>>),
+
+    in(kRunningSequence, "kinovazed.state.running.mode", "Beat 5, then JoystickModeSet.",
+       on<running_mode>),
+    in(kRunningSequence, "kinovazed.state.running.objective", "Beat 37, then ObjectiveDone.",
+       on<running_objective>),
+    in(kRunningSequence, "kinovazed.state.running.refused", "Seven commands, then ObjectiveDone.",
+       on<refused_until<kRunningSequence, kNotInRunning, Event::kObjectiveDone>>),
+
+    in(kFrozen, "kinovazed.state.frozen.unfreeze", "Unfreezed, and beat 21.", on<unfreeze>),
+    in(kFrozen, "kinovazed.state.frozen.refused", "Seven commands, and beat 13.",
+       on<refused<kFrozen, kNotInFrozen>>),
+};
+
+}  // namespace
+
+std::span<const Case> state_cases() noexcept { return kCases; }
+
+}  // namespace armjig::kinovazed

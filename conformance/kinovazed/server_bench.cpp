@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/server_bench.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+namespace armjig::kinovazed {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kRemembered = 8;
+/// A server that its supervisor starts again is there by then.
+constexpr Duration kRestartTime = 15s;
+/// Two modes within half a second, by way of EStop, hang the shipped server.
+constexpr Duration kBetweenModes = 700ms;
+/// A beat nearer to a change than that may be from before it.
+constexpr Duration kBeatIsOld = 100ms;
+/// The slowest real server takes 110 ms.
+constexpr Duration kAcceptedTime = 150ms;
+constexpr Duration kBeatTime = 1300ms;
+
+double milliseconds(Duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+std::string text_of(const ServerMessage& message) {
+  auto text = std::string{encode(message).view()};
+  text.resize(text.size() - 2);
+  return text;
+}
+
+/// Control characters and what is no ASCII as escapes; long lines cut.
+std::string printable(std::string_view text) {
+  std::string shown;
+  for (const char c : text.substr(0, 60)) {
+    const auto byte = static_cast<unsigned char>(c);
+    shown += byte >= 0x20 && byte < 0x7F ? std::string{c} : fmt::format("\\x{:02X}", byte);
+  }
+  return text.size() > 60 ? fmt::format("{}... ({} bytes)", shown, text.size()) : shown;
+}
+
+bool is_event_free(std::string_view command) {
+  return command == "EStop" || command == "QuitEStop" || command.starts_with("MoveJoystick");
+}
+
+}  // namespace
+
+ServerBench::ServerBench(std::unique_ptr<SessionSource> source) : source_{std::move(source)} {
+  clients_.emplace_back().port = source_->make_port();
+}
+
+ServerBench::~ServerBench() = default;
+
+Result<void> ServerBench::begin_session() {
+  auto& first = clients_.front();
+  const auto deadline = first.port->now() + 3s;
+  auto connected = first.port->connect(deadline);
+  while (!connected && first.port->now() < deadline) {
+    source_->pause(100ms);
+    connected = first.port->connect(deadline);
+  }
+  first.is_connected = connected.has_value();
+  return connected;
+}
+
+Instant ServerBench::now() const { return clients_[current_].port->now(); }
+
+ServerBench::Client& ServerBench::client() { return clients_[current_]; }
+
+Duration ServerBench::answer_time() const { return std::max<Duration>(2s, 20 * noise_); }
+Duration ServerBench::silence_time() const { return std::max<Duration>(250ms, 5 * noise_); }
+
+void ServerBench::forget_exchange() {
+  exchange_.clear();
+  about_.clear();
+}
+
+std::string ServerBench::last_exchange() const {
+  std::string text;
+  for (const auto& line : exchange_) text += line;
+  return text;
+}
+
+void ServerBench::remember(std::string_view arrow, std::string_view text) {
+  exchange_.push_back(fmt::format("{:.3f} ms {} {} {}\n", milliseconds(now().time_since_epoch()),
+                                  current_, arrow, printable(text)));
+  if (exchange_.size() > kRemembered) exchange_.pop_front();
+}
+
+std::string ServerBench::behind(std::string text) const {
+  return about_.empty() ? text : fmt::format("{} ({})", text, about_);
+}
+
+std::string ServerBench::silence_of(Duration time) {
+  if (client().has_ended) return "the end of the connection";
+  return fmt::format("nothing within {:.0f} ms", milliseconds(time));
+}
+
+// Connections.
+
+void ServerBench::as(std::size_t client) {
+  while (clients_.size() <= client) clients_.emplace_back().port = source_->make_port();
+  current_ = client;
+}
+
+bool ServerBench::connect_again(Duration patience) {
+  auto& one = client();
+  one.port->close();
+  one = Client{.port = std::move(one.port)};
+  const auto deadline = one.port->now() + patience;
+  for (;;) {
+    const auto connected = one.port->connect(one.port->now() + answer_time());
+    one.is_connected = connected.has_value();
+    if (connected) return true;
+    if (one.port->now() >= deadline) return false;
+    source_->pause(100ms);
+  }
+}
+
+void ServerBench::connect() {
+  if (is_deaf()) return;
+  remember("connects", "");
+  if (!connect_again(answer_time())) fail(behind("a connection"), "it is refused");
+}
+
+void ServerBench::leave() {
+  if (is_deaf()) return;
+  remember("closes", "");
+  port().close();
+  client().is_connected = false;
+}
+
+void ServerBench::finish_sending() {
+  if (is_deaf()) return;
+  remember("closes its side", "");
+  port().half_close();
+}
+
+void ServerBench::throw_away() {
+  if (is_deaf()) return;
+  remember("resets", "");
+  port().reset();
+  client().is_connected = false;
+}
+
+void ServerBench::expect_end() {
+  const auto word = next_word(answer_time());
+  if (word) return fail(behind("the end of the connection"), text_of(word->message));
+  if (!is_deaf() && !client().has_ended) {
+    fail(behind("the end of the connection"), silence_of(answer_time()));
+  }
+}
+
+void ServerBench::expect_quiet(Duration time) {
+  const auto word = next_word(time);
+  if (word) return fail(behind("nothing but beats"), text_of(word->message));
+  if (!is_deaf() && client().has_ended) {
+    fail(behind("an open connection"), "the end of the connection");
+  }
+}
+
+void ServerBench::expect_no_message(Duration time) {
+  client().beats.clear();
+  expect_quiet(time);
+  if (client().beats.empty()) return;
+  fail(behind("no message at all"), text_of(client().beats.front().message));
+}
+
+// Lines.
+
+void ServerBench::send(std::string_view segment) {
+  if (is_deaf()) return;
+  if (segment.starts_with("SetJoystickMode")) mode_said_ = now();
+  remember(">", segment);
+  if (!port().send(std::as_bytes(std::span{segment}))) client().has_ended = true;
+}
+
+void ServerBench::pause(Duration time) {
+  const auto deadline = now() + time;
+  while (!is_deaf() && now() < deadline) {
+    if (!client().is_connected || client().has_ended) return source_->pause(deadline - now());
+    read_until(deadline);
+  }
+}
+
+/// Reads once.
+void ServerBench::read_until(Instant deadline) {
+  std::array<std::byte, 4096> buffer;
+  const auto received = port().receive(buffer, deadline);
+  if (!received || received->arrival == SessionPort::Arrival::kEnd ||
+      received->arrival == SessionPort::Arrival::kReset) {
+    client().has_ended = true;
+    remember("<", "the end of the connection");
+    return;
+  }
+  auto& text = client().unfinished;
+  for (const auto byte : std::span{buffer}.first(received->size)) {
+    text += static_cast<char>(byte);
+    if (text.back() != '\n') continue;
+    take_line(text);
+    text.clear();
+  }
+}
+
+void ServerBench::take_line(std::string_view line) {
+  auto& one = client();
+  remember("<", line);
+  const auto message = decode_message(line.substr(0, line.size() - 1));
+  if (!message) {
+    return fail(behind("one of the server's words and CR LF"),
+                fmt::format("'{}': {}", printable(line), describe(message.error())));
+  }
+  const Heard heard{now(), one.count++, *message};
+  if (std::holds_alternative<Heartbeat>(*message)) {
+    one.last_beat = heard.time;
+    one.beats.push_back(heard);
+  } else {
+    one.words.push_back(heard);
+  }
+}
+
+// Answers.
+
+std::optional<Heard> ServerBench::next_word(Duration within) {
+  auto& one = client();
+  const auto deadline = now() + within;
+  while (one.words.empty() && !is_deaf() && !one.has_ended && now() < deadline) {
+    read_until(deadline);
+  }
+  if (one.words.empty() || is_over()) return std::nullopt;
+  const auto word = one.words.front();
+  one.words.pop_front();
+  return word;
+}
+
+Heard ServerBench::expect(Event wanted, Duration within) {
+  const auto word = next_word(within);
+  if (!word) {
+    fail_by_silence(behind(std::string{to_string(wanted)}), silence_of(within));
+    return {now()};
+  }
+  if (word->message != ServerMessage{wanted}) {
+    fail(behind(std::string{to_string(wanted)}), text_of(word->message));
+  }
+  return *word;
+}
+
+void ServerBench::expect_silence() {
+  const auto word = next_word(silence_time());
+  if (word) fail(behind("no answer"), text_of(word->message));
+}
+
+void ServerBench::refuse(std::string_view command) {
+  about(std::string{command});
+  say(command);
+  expect(Event::kRejected);
+}
+
+void ServerBench::accept(std::string_view command) {
+  about(std::string{command});
+  say(command);
+  if (!is_documented() || is_event_free(command)) {
+    expect(Event::kAccepted);
+  } else {
+    pass_over_accepted();
+  }
+}
+
+Heard ServerBench::perform(std::string_view command, Event event, Duration within) {
+  about(std::string{command});
+  say(command);
+  const auto first = next_word(within);
+  if (!first) {
+    fail_by_silence(behind(std::string{to_string(event)}), silence_of(within));
+    return {now()};
+  }
+  if (first->message == ServerMessage{Event::kAccepted}) return expect(event, within);
+  if (first->message != ServerMessage{event}) {
+    fail(behind(std::string{to_string(event)}), text_of(first->message));
+  }
+  is_documented() ? pass_over_accepted() : void(expect(Event::kAccepted));
+  return *first;
+}
+
+/// A shipped server sends it, in front of the event or at times behind it.
+void ServerBench::pass_over_accepted() {
+  const auto word = next_word(kAcceptedTime);
+  if (word && word->message != ServerMessage{Event::kAccepted}) client().words.push_front(*word);
+}
+
+void ServerBench::expect_probe() {
+  const bool is_stopped = start_ == kStopped;
+  say(is_stopped ? "EStop" : "QuitEStop");
+  expect(is_stopped || start_ == kOff ? Event::kAccepted : Event::kRejected);
+}
+
+void ServerBench::not_understood(std::string_view line) {
+  about(printable(line));
+  say(line);
+  if (is_documented()) expect(Event::kRejected);
+  expect_probe();
+}
+
+void ServerBench::ignored(std::string_view bytes) {
+  about(printable(bytes));
+  send(bytes);
+  expect_probe();
+}
+
+// Beats.
+
+std::optional<Heard> ServerBench::next_beat(Instant after, Duration within) {
+  auto& one = client();
+  const auto deadline = now() + within;
+  for (;;) {
+    while (!one.beats.empty() && one.beats.front().time <= after) one.beats.pop_front();
+    if (!one.beats.empty() || is_deaf() || one.has_ended || now() >= deadline) break;
+    read_until(deadline);
+  }
+  if (one.beats.empty() || is_over()) return std::nullopt;
+  const auto beat = one.beats.front();
+  one.beats.pop_front();
+  return beat;
+}
+
+Heard ServerBench::await_beat() {
+  const auto beat = next_beat(now(), kBeatTime + noise_);
+  if (!beat) fail_by_silence(behind("a heartbeat"), silence_of(kBeatTime));
+  return beat.value_or(Heard{now()});
+}
+
+void ServerBench::expect_beat(int flags) {
+  const auto wanted = fmt::format("Heartbeat:{}", flags);
+  const auto beat = next_beat(now() + kBeatIsOld, kBeatTime + kBeatIsOld + noise_);
+  if (!beat) return fail_by_silence(behind(wanted), silence_of(kBeatTime));
+  const auto text = text_of(beat->message);
+  if (text != wanted) fail(behind(wanted), text);
+}
+
+std::size_t ServerBench::count_beats(Duration time) {
+  client().beats.clear();
+  pause(time);
+  return client().beats.size();
+}
+
+void ServerBench::wait_until_before_beat(Duration time) {
+  (void)await_beat();
+  pause(1s - time);
+}
+
+void ServerBench::expect_true(bool is_so, std::string_view wanted, std::string actual) {
+  if (!is_so) fail(behind(std::string{wanted}), std::move(actual));
+}
+
+// The server and its machine.
+
+void ServerBench::touch(std::string_view input, std::int64_t value) {
+  if (is_deaf() || source_->touch(input, value)) return;
+  skip(fmt::format("needs a hand at the server, for {}", input));
+}
+
+void ServerBench::spoil(Recovery recovery) {
+  if (is_deaf()) return;
+  // As it is anyway; it shows whether there is a hand.
+  const bool has_hand = source_->touch("arm.fail.arm_open", 0);
+  is_spoiled_ = has_hand || recovery == Recovery::kBySupervisor;
+  if (!is_spoiled_) {
+    skip("hangs the server: needs somebody who can end and start it, for no client can");
+  }
+}
+
+bool ServerBench::answers() {
+  if (is_deaf()) return true;
+  send("EStop\r\n");
+  return next_word(answer_time()).has_value();
+}
+
+bool ServerBench::is_served() { return is_deaf() || (connect_again(Duration{}) && answers()); }
+
+/// EStop ends whatever is under way; what was said before is passed over.
+bool ServerBench::stop_all() {
+  auto& one = client();
+  one.words.clear();
+  send("\r\nEStop\r\n");
+  for (auto word = next_word(answer_time()); word; word = next_word(answer_time())) {
+    if (word->message != ServerMessage{Event::kAccepted}) continue;
+    pause(30ms + 3 * noise_);
+    one.words.clear();
+    return true;
+  }
+  return false;
+}
+
+/// What clients have said while they waited is carried out when the first one leaves, so it does.
+void ServerBench::drop_others() {
+  current_ = 0;
+  if (clients_.size() == 1) return;
+  clients_.erase(clients_.begin() + 1, clients_.end());
+  port().close();
+  client().is_connected = false;
+}
+
+bool ServerBench::is_alive() {
+  drop_others();
+  if (std::exchange(is_spoiled_, false)) restart();
+  const auto& one = client();
+  if ((!one.is_connected || one.has_ended) && !connect_again(kRestartTime)) return false;
+  return stop_all();
+}
+
+void ServerBench::measure_noise() {
+  constexpr int kSamples = 20;
+  for (int i = 0; i < kSamples && !client().has_ended; ++i) {
+    source_->pause(std::chrono::milliseconds{1 + i});
+    const auto asked = now();
+    send("EStop\r\n");
+    if (const auto answer = next_word(answer_time())) {
+      noise_ = std::max(noise_, answer->time - asked);
+    }
+  }
+}
+
+void ServerBench::restart() {
+  const bool has_hand = source_->touch("restart", 1);
+  if (!has_hand && start_ == kFresh) return skip("needs somebody who can start the server anew");
+  source_->pause(100ms);
+  client().has_ended = true;
+  mode_said_.reset();
+}
+
+/// For a server that does not stop.
+bool ServerBench::start_anew() {
+  return source_->touch("restart", 1) && connect_again(kRestartTime) && stop_all();
+}
+
+void ServerBench::bring_to(std::size_t start) {
+  drop_others();
+  start_ = static_cast<Start>(start);
+  if (std::exchange(is_spoiled_, false) || start_ == kFresh) restart();
+  auto& one = client();
+  if (!one.is_connected || one.has_ended) {
+    if (!connect_again(kRestartTime)) return fail("a connection", "it is refused");
+  }
+  if (start_ == kFresh || is_over()) return;
+  if (!stop_all() && !start_anew()) {
+    return fail_by_silence("Accepted (EStop)", silence_of(answer_time()));
+  }
+  if (start_ == kStopped) return;
+  accept("QuitEStop");
+  if (start_ == kOff) return;
+  if (mode_said_) pause(*mode_said_ + kBetweenModes - now());
+  perform("Initialize", Event::kInitialized);
+  if (start_ == kSteering) perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+  if (start_ == kFolded) perform("Retract", Event::kRetracted);
+  about({});
+}
+
+}  // namespace armjig::kinovazed

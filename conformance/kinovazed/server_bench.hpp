@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/bench.hpp"
+#include "harness/link/session_source.hpp"
+#include "harness/wire/kinovazed/line.hpp"
+
+namespace armjig::kinovazed {
+
+/// The states in which cases begin, as indices into the suite's `starts`. One client is connected,
+/// and nothing is under way.
+enum Start : std::uint8_t {
+  kStopped,   ///< emergencyStopped
+  kOff,       ///< poweredOff
+  kReady,     ///< idle, the arm at its ready pose
+  kSteering,  ///< in mode XYZ, the arm at its ready pose
+  kFolded,    ///< retracted
+  kFresh,     ///< just started, nothing was said yet
+};
+
+/// A message of the server and when it was read. `order` counts all messages of a connection.
+struct Heard {
+  Instant time{};
+  std::size_t order{};
+  ServerMessage message;
+};
+
+/// A conversation with a KinovaZED server, in the words of its protocol. Words are about one client
+/// at a time, the first one unless `as` says otherwise.
+class ServerBench final : public Bench {
+ public:
+  explicit ServerBench(std::unique_ptr<SessionSource> source);
+  ~ServerBench() override;
+
+  [[nodiscard]] bool is_documented() const noexcept {
+    return profile() == armjig::Profile::kDocumented;
+  }
+
+  /// Connects the first client. Errors: those of `SessionPort::connect`.
+  [[nodiscard]] Result<void> begin_session();
+
+  [[nodiscard]] bool is_alive() override;
+  void bring_to(std::size_t start) override;
+  void measure_noise() override;
+  [[nodiscard]] Duration noise() const override { return noise_; }
+  [[nodiscard]] Instant now() const override;
+  [[nodiscard]] const std::optional<Error>& error() const override { return error_; }
+  [[nodiscard]] std::string last_exchange() const override;
+
+  // Connections.
+  /// Which client acts and listens from now on, from 0. Those beyond the first begin unconnected,
+  /// and are gone when the case is over.
+  void as(std::size_t client);
+  void connect();
+  void leave();           ///< closes both directions
+  void finish_sending();  ///< and still reads
+  void throw_away();      ///< resets
+  /// The server closes the connection, now.
+  void expect_end();
+  /// It does not, and says nothing but beats, for so long.
+  void expect_quiet(Duration time);
+
+  /// Not even a beat comes for so long.
+  void expect_no_message(Duration time);
+
+  // Lines.
+  void send(std::string_view segment);
+  void say(std::string_view line) { send(std::string{line} + "\r\n"); }
+  void pause(Duration time);
+
+  // Answers. Beats are passed over.
+  /// The next word, now.
+  Heard expect(Event wanted) { return expect(wanted, answer_time()); }
+  Heard expect(Event wanted, Duration within);
+  /// Nothing but beats for as long as an answer may take.
+  void expect_silence();
+  void refuse(std::string_view command);
+  /// Commands without an event of their own, and in profile firmware all, are `Accepted`. In
+  /// profile documented the others may be.
+  void accept(std::string_view command);
+  /// A command and its event. If the arm is there already, they come in any order.
+  /// Gives the event.
+  Heard perform(std::string_view command, Event event, Duration within = kMotionTime);
+  /// A line that is no command: silence in profile firmware, `Rejected` in documented.
+  void not_understood(std::string_view line);
+  /// Bytes that get no answer, in no profile.
+  void ignored(std::string_view bytes);
+  /// The server still answers, and has nothing else to say.
+  void expect_probe();
+
+  // Beats.
+  /// The next beat, or what time it is if none comes.
+  Heard await_beat();
+  /// The next beat that cannot be from before now.
+  void expect_beat(int flags);
+  /// Beats that come from now on, for so long.
+  [[nodiscard]] std::size_t count_beats(Duration time);
+  /// Lets time pass until a beat is that far away.
+  void wait_until_before_beat(Duration time);
+
+  /// What comes next is about this: it stands behind every expectation until it is said anew.
+  void about(std::string what) { about_ = std::move(what); }
+  void expect_true(bool is_so, std::string_view wanted, std::string actual);
+
+  /// Does at the server what no client can; skips the case where nobody can.
+  void touch(std::string_view input, std::int64_t value);
+  /// What follows ends the server, or leaves it as no client can put it right: it is started anew
+  /// before the next case. Skips the case where nobody can do that.
+  enum class Recovery : std::uint8_t {
+    kBySupervisor,  ///< the process ends, and whoever runs it starts it again
+    kByHand,        ///< it lives on and serves nobody
+  };
+  void spoil(Recovery recovery);
+  /// Whether the server answers EStop; no finding yet.
+  [[nodiscard]] bool answers();
+  /// Connects, once, and tells whether EStop is answered; no finding yet.
+  [[nodiscard]] bool is_served();
+
+  /// Time in which an answer has to come.
+  [[nodiscard]] Duration answer_time() const;
+  [[nodiscard]] Duration silence_time() const;
+
+  /// Longer than any motion of any arm takes.
+  static constexpr Duration kMotionTime = std::chrono::seconds{40};
+
+ protected:
+  void forget_exchange() override;
+
+ private:
+  struct Client {
+    std::unique_ptr<SessionPort> port;
+    bool is_connected = false;
+    bool has_ended = false;
+    std::string unfinished;
+    std::size_t count = 0;
+    std::deque<Heard> words;
+    std::deque<Heard> beats;
+    std::optional<Instant> last_beat{};
+  };
+
+  [[nodiscard]] Client& client();
+  [[nodiscard]] SessionPort& port() { return *client().port; }
+  [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over(); }
+  [[nodiscard]] bool connect_again(Duration patience);
+  void read_until(Instant deadline);
+  void take_line(std::string_view line);
+  [[nodiscard]] std::optional<Heard> next_word(Duration within);
+  void pass_over_accepted();
+  [[nodiscard]] std::optional<Heard> next_beat(Instant after, Duration within);
+  [[nodiscard]] bool stop_all();
+  void drop_others();
+  void restart();
+  [[nodiscard]] bool start_anew();
+  void remember(std::string_view arrow, std::string_view text);
+  [[nodiscard]] std::string behind(std::string text) const;
+  [[nodiscard]] std::string silence_of(Duration time);
+
+  std::unique_ptr<SessionSource> source_;
+  std::vector<Client> clients_;
+  std::size_t current_ = 0;
+  std::optional<Error> error_;
+  std::deque<std::string> exchange_;
+  std::string about_;
+  std::optional<Instant> mode_said_;
+  Start start_ = kStopped;
+  Duration noise_{};
+  bool is_spoiled_ = false;
+};
+
+}  // namespace armjig::kinovazed

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/suite.hpp"
+
+#include <array>
+#include <utility>
+
+#include "conformance/kinovazed/chapters.hpp"
+#include "conformance/kinovazed/server_bench.hpp"
+#include "emulators/host/devices.hpp"
+
+namespace armjig::kinovazed {
+namespace {
+
+/// In the order of `Start`.
+constexpr std::array kStarts{
+    StartState{"emergencyStopped", Hazard::kObserve},
+    StartState{"poweredOff", Hazard::kState},
+    StartState{"idle, the arm at its ready pose", Hazard::kMove},
+    StartState{"steering in mode XYZ", Hazard::kMove},
+    StartState{"retracted", Hazard::kMove},
+    StartState{"just started", Hazard::kObserve},
+};
+
+Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
+  auto source = open_server(how, hosted_server("kinovazed").open);
+  if (!source) return tl::unexpected{source.error()};
+  auto bench = std::make_unique<ServerBench>(*std::move(source));
+  if (const auto begun = bench->begin_session(); !begun) {
+    return problem(begun.error().code, how.target.text, "is the server running, with its arm?");
+  }
+  return bench;
+}
+
+}  // namespace
+
+Suite suite() noexcept {
+  static const std::array kChapters{
+      Chapter{"States", state_requirements(), state_cases()},
+      Chapter{"Connections", connection_requirements(), connection_cases()},
+      Chapter{"Lines", line_requirements(), line_cases()},
+      Chapter{"Long lines and line feeds", long_line_requirements(), long_line_cases()},
+      Chapter{"Replies and events", reply_requirements(), reply_cases()},
+      Chapter{"Interrupts and ends", interrupt_requirements(), interrupt_cases()},
+      Chapter{"Heartbeats", beat_requirements(), beat_cases()},
+      Chapter{"Joystick", joystick_requirements(), joystick_cases()},
+      Chapter{"Objectives", objective_requirements(), objective_cases()},
+      Chapter{"Supervision of the arm", arm_requirements(), arm_cases()},
+      Chapter{"Robustness", robust_requirements(), robust_cases()},
+      Chapter{"Deaths", death_requirements(), death_cases()},
+  };
+  return {"kinovazed", "0.1", kChapters, kStarts, open};
+}
+
+}  // namespace armjig::kinovazed

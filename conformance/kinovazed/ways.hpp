@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "conformance/kinovazed/server_bench.hpp"
+#include "conformance/suite.hpp"
+#include "emulators/kinovazed/machine.hpp"
+#include "harness/rig/guard.hpp"
+
+/// Ways into the states of the server, and what a beat says there.
+namespace armjig::kinovazed {
+
+/// A target so far away from the ready pose that the fastest arm needs more than a second.
+inline constexpr auto kFarObjective = "RunObjective:SuckDoor";
+/// The beat that shows a state of less than a second comes that long behind the command.
+inline constexpr Duration kBeforeBeat = std::chrono::milliseconds{350};
+
+/// From which start a case reaches a state by `enter`.
+[[nodiscard]] constexpr Start start_for(State state) noexcept {
+  switch (state) {
+    case State::kEmergencyStopped:
+      return kStopped;
+    case State::kPoweredOff:
+      return kOff;
+    case State::kSteering:
+      return kSteering;
+    case State::kInitializing:
+    case State::kRetracted:
+    case State::kUnfolding:
+      return kFolded;
+    default:
+      return kReady;
+  }
+}
+
+[[nodiscard]] constexpr Hazard hazard_of(State state) noexcept {
+  if (state == State::kEmergencyStopped) return Hazard::kObserve;
+  return state == State::kPoweredOff ? Hazard::kState : Hazard::kMove;
+}
+
+/// The beat of a state that was not entered anew from idle.
+[[nodiscard]] int beat_of(State state) noexcept;
+
+/// Goes to the state from its start. A beat comes soon behind.
+void enter(ServerBench& server, State state);
+
+/// From retracted to poweredOff; the arm stays folded, so that initializing takes its time.
+void switch_off(ServerBench& server);
+
+/// A case that begins where its state can be entered.
+[[nodiscard]] constexpr Case in(State state, std::string_view requirement, std::string_view rule,
+                                void (*run)(Bench&), std::string_view variant = {}) noexcept {
+  return {.requirement = requirement,
+          .variant = variant,
+          .rule = rule,
+          .run = run,
+          .hazard = hazard_of(state),
+          .start = start_for(state)};
+}
+
+}  // namespace armjig::kinovazed

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "conformance/morap/chapters.hpp"
+#include "conformance/morap/node_bench.hpp"
+
+namespace armjig::morap {
+namespace {
+
+using enum CommandId;
+
+void first_mode(NodeBench& node) {
+  node.turn(1000);
+  const auto unchosen = node.read_on(4);
+  node.expect_same(unchosen, node.read(kReadAngle, 4));
+}
+
+template <CommandId selector>
+void zero_at_boot(NodeBench& node) {
+  node.expect_bytes(selector, "00 00 00 00");
+}
+
+void address(NodeBench& node) {
+  node.expect_same(node.read(kReadAddress, 1), std::vector{std::byte{node.address().value}});
+}
+
+void keeps_mode(NodeBench& node) {
+  node.send(kSpeed, 0.75F);
+  node.send(kReadSpeedReference);
+  for (int i = 0; i < 4; ++i) node.expect_read_on("00 00 40 3F");
+}
+
+void mode_over_commands(NodeBench& node) {
+  node.send(kReadMotorStatus);
+  node.send(kPosition, 0.5F);
+  node.send(kSpeed, 0.5F);
+  node.send(kDisable);
+  node.send(kCalibrationUnknown);
+  node.expect_read_on("03");
+}
+
+void mode_over_brake(NodeBench& node) {
+  node.send(kReadMotorStatus);
+  node.send(kBrake14);
+  node.send(kBrake15);
+  node.expect_read_on("03");
+}
+
+void mode_over_unknown(NodeBench& node) {
+  node.send(kReadMotorStatus);
+  for (const auto* const id : {"06", "23", "87", "8C", "FF"}) {
+    node.about(fmt::format("behind {}", id));
+    node.send_bytes(id);
+    node.expect_read_on("03");
+  }
+}
+
+void surplus(NodeBench& node) {
+  node.send(kSpeed, 0.75F);
+  node.send_bytes("82 81");
+  node.expect_read_on("00 00 40 3F");
+}
+
+void short_read(NodeBench& node) {
+  node.send(kSpeed, 0.2F);
+  node.send(kReadSpeedReference);
+  node.expect_read_on("CD CC");
+  node.expect_read_on("CD");
+  node.expect_read_on("CD CC 4C 3E");
+}
+
+void little_endian(NodeBench& node) {
+  node.turn(1000);
+  node.expect_bytes(kReadAngle, node.motor().thousand_counts);
+}
+
+void snapshot(NodeBench& node) {
+  node.turn(1000);
+  node.send(kReadAngle);
+  const auto before = node.read_on(4);
+  node.expect_same(node.read_around(node.address(), 4, [&] { node.turn(5000); }), before);
+}
+
+void wrap(NodeBench& node) {
+  node.turn(1000);
+  node.send(kReadAngle);
+  const auto first = node.read_on(4);
+  const auto bytes = node.read_around(node.address(), 260, [&] { node.turn(1000); });
+  node.about("the first four of 260 bytes");
+  node.expect_same(Bytes{bytes}.first(std::min<std::size_t>(bytes.size(), 4)), first);
+  const auto second = node.read_on(4);
+  node.about("the last four, behind a turn of the shaft");
+  node.expect_same(Bytes{bytes}.subspan(bytes.size() < 260 ? 0 : 256), second);
+}
+
+void byte_again(NodeBench& node) { node.expect_bytes(kReadMotorStatus, "03 03 03 03"); }
+
+void set_filled(NodeBench& node) {
+  const auto bytes = node.read(kReadPositionSet, 64);
+  const auto set = decode_set(bytes);
+  const auto* good = std::get_if<ControllerSet>(&set);
+  node.expect_true(good != nullptr, "a controller set", "none");
+  const auto size = good == nullptr ? 0 : wire_size(*good);
+  node.expect_same(Bytes{bytes}.subspan(size), std::vector<std::byte>(bytes.size() - size));
+}
+
+void set_wrap(NodeBench& node) {
+  const auto set = node.read(kReadPositionSet, 31);
+  const auto bytes = node.read_on(256 + 31);
+  node.expect_same(Bytes{bytes}.subspan(256), set);
+}
+
+void set_checksum(NodeBench& node) {
+  for (const auto selector : {kReadPositionSet, kReadSpeedSet}) {
+    const auto bytes = node.read(selector, kLargestSetSize);
+    const auto set = decode_set(bytes);
+    node.expect_true(std::holds_alternative<ControllerSet>(set), "a set with its checksum",
+                     "another checksum");
+  }
+}
+
+void position_default(NodeBench& node) {
+  node.expect_bytes(kReadPositionSet, node.motor().position_set);
+}
+
+void speed_default(NodeBench& node) { node.expect_bytes(kReadSpeedSet, node.motor().speed_set); }
+
+constexpr Case kCases[] = {
+    {.requirement = "morap.read.first-mode",
+     .rule = "A turned shaft is read without a choice and with one.",
+     .run = on<first_mode>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.angle-at-boot",
+     .rule = "It is read first.",
+     .run = on<zero_at_boot<kReadAngle>>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.voltage-at-boot",
+     .rule = "It is read first.",
+     .run = on<zero_at_boot<kReadVoltage>>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.position-at-boot",
+     .rule = "It is read first.",
+     .run = on<zero_at_boot<kReadPositionReference>>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.speed-at-boot",
+     .rule = "It is read first.",
+     .run = on<zero_at_boot<kReadSpeedReference>>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.address", .rule = "It is read.", .run = on<address>},
+    {.requirement = "morap.read.keeps-mode",
+     .rule = "One choice, four reads.",
+     .run = on<keeps_mode>,
+     .hazard = Hazard::kState,
+     .start = kUncalibrated},
+    {.requirement = "morap.read.mode-over-commands",
+     .rule = "The status is chosen, then commands of all sorts.",
+     .run = on<mode_over_commands>,
+     .hazard = Hazard::kState,
+     .start = kUncalibrated},
+    {.requirement = "morap.read.mode-over-brake",
+     .rule = "The status is chosen, then 14 and 15.",
+     .run = on<mode_over_brake>,
+     .hazard = Hazard::kState,
+     .start = kUncalibrated},
+    {.requirement = "morap.read.mode-over-unknown",
+     .rule = "The status is chosen, then identifiers without a meaning.",
+     .run = on<mode_over_unknown>,
+     .hazard = Hazard::kState,
+     .start = kUncalibrated},
+    {.requirement = "morap.read.surplus",
+     .rule = "The speed reference is chosen, with another choice behind it.",
+     .run = on<surplus>,
+     .hazard = Hazard::kState,
+     .start = kUncalibrated},
+    {.requirement = "morap.read.short",
+     .rule = "Two bytes, one byte, all four.",
+     .run = on<short_read>,
+     .hazard = Hazard::kState,
+     .start = kUncalibrated},
+    {.requirement = "morap.read.little-endian",
+     .rule = "A thousand counts, not calibrated.",
+     .run = on<little_endian>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.snapshot",
+     .rule = "The shaft turns behind the first byte.",
+     .run = on<snapshot>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.wrap",
+     .rule = "260 bytes, and the shaft turns between.",
+     .run = on<wrap>,
+     .hazard = Hazard::kState,
+     .start = kFresh},
+    {.requirement = "morap.read.byte-again",
+     .rule = "The status, four times in one read.",
+     .run = on<byte_again>,
+     .hazard = Hazard::kState,
+     .start = kUncalibrated},
+    {.requirement = "morap.read.set-filled", .rule = "64 bytes are read.", .run = on<set_filled>},
+    {.requirement = "morap.read.set-wrap", .rule = "287 bytes are read.", .run = on<set_wrap>},
+    {.requirement = "morap.read.set-checksum",
+     .rule = "Both sets are read.",
+     .run = on<set_checksum>},
+    {.requirement = "morap.read.position-default",
+     .rule = "It is loaded and read.",
+     .run = on<position_default>,
+     .hazard = Hazard::kProgram,
+     .start = kProgrammable},
+    {.requirement = "morap.read.speed-default",
+     .rule = "It is loaded and read.",
+     .run = on<speed_default>,
+     .hazard = Hazard::kProgram,
+     .start = kProgrammable},
+};
+
+}  // namespace
+
+std::span<const Case> reading_cases() noexcept { return kCases; }
+
+}  // namespace armjig::morap

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/morap/node_bench.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "emulators/morap/control.hpp"
+#include "harness/core/hex.hpp"
+
+namespace armjig::morap {
+namespace {
+
+using namespace std::chrono_literals;
+using enum CommandId;
+
+constexpr std::uint16_t kIdleRate = 200;
+/// Behind a tick; no transaction is as short.
+constexpr Duration kMargin = 20us;
+
+std::vector<std::byte> bytes_of(std::string_view hex) { return *from_hex(hex); }
+
+const DissectorEntry& dissector_entry() {
+  return *std::ranges::find(dissectors(), "morap", &DissectorEntry::device);
+}
+
+std::string name_of_selector(CommandId selector) {
+  const auto* reading = find_reading(selector);
+  return reading == nullptr ? "a reading" : std::string{reading->name};
+}
+
+}  // namespace
+
+NodeBench::NodeBench(std::unique_ptr<BusPort> port, const Subject& subject)
+    : BusBench{std::move(port), dissector_entry()}, subject_{subject} {}
+
+NodeBench::~NodeBench() { put_sets_back(); }
+
+void NodeBench::forget_exchange() {
+  BusBench::forget_exchange();
+  about_.clear();
+}
+
+std::string NodeBench::behind(std::string text) const {
+  return about_.empty() ? text : fmt::format("{} ({})", text, about_);
+}
+
+// ---- Writing and reading
+
+void NodeBench::send(const Command& command) { send_bytes(encode(command)); }
+
+void NodeBench::tune(TuneKind kind, float inertia, float pole) {
+  send(Command{kTune, TuneRequest{kind, inertia, pole}});
+}
+
+void NodeBench::send_bytes(std::string_view hex, End end) { send_bytes(bytes_of(hex), end); }
+
+void NodeBench::send_bytes(Bytes bytes, End end) {
+  if (is_deaf()) return;
+  const auto written = write(subject_.address, bytes, end);
+  if (error()) return;
+  if (!written.is_addressed) {
+    fail_by_silence(behind("the address to be acknowledged"), "it was not");
+  } else if (written.refused > 0) {
+    fail(behind("all bytes to be acknowledged"),
+         fmt::format("{} of {} were not", written.refused, bytes.size()));
+  }
+}
+
+std::vector<std::byte> NodeBench::read_on(std::size_t size) {
+  auto bytes = BusBench::read(subject_.address, size);
+  if (!bytes && !is_deaf()) {
+    fail_by_silence(behind("the address to be acknowledged for a read"), "it was not");
+  }
+  return bytes.value_or(std::vector<std::byte>(size));
+}
+
+std::vector<std::byte> NodeBench::read(CommandId selector, std::size_t size) {
+  send(selector);
+  return read_on(size);
+}
+
+float NodeBench::number(CommandId selector) {
+  return decode_float(slice<4>(Bytes{read(selector, 4)}, 0));
+}
+
+// ---- Expecting
+
+void NodeBench::expect_same(Bytes actual, Bytes wanted) {
+  if (std::ranges::equal(actual, wanted)) return;
+  fail(behind(to_hex_dump(wanted)), to_hex_dump(actual));
+}
+
+void NodeBench::expect_bytes(CommandId selector, std::string_view hex) {
+  const auto wanted = bytes_of(hex);
+  expect_same(read(selector, wanted.size()), wanted);
+}
+
+void NodeBench::expect_read_on(std::string_view hex) {
+  const auto wanted = bytes_of(hex);
+  expect_same(read_on(wanted.size()), wanted);
+}
+
+void NodeBench::expect_number(CommandId selector, float wanted) {
+  const auto actual = number(selector);
+  if (std::bit_cast<std::uint32_t>(actual) == std::bit_cast<std::uint32_t>(wanted)) return;
+  fail(behind(fmt::format("{} {}", name_of_selector(selector), wanted)), fmt::format("{}", actual));
+}
+
+void NodeBench::expect_near(CommandId selector, double wanted, double tolerance) {
+  const auto actual = static_cast<double>(number(selector));
+  if (std::fabs(actual - wanted) <= tolerance) return;
+  fail(behind(fmt::format("{} {} within {}", name_of_selector(selector), wanted, tolerance)),
+       fmt::format("{}", actual));
+}
+
+void NodeBench::expect_status(MotorStatus wanted) {
+  const auto actual = std::to_integer<int>(read(kReadMotorStatus, 1)[0]);
+  if (actual == static_cast<int>(wanted)) return;
+  fail(behind(fmt::format("motor status {}", static_cast<int>(wanted))), fmt::format("{}", actual));
+}
+
+void NodeBench::expect_programming(ProgrammingStatus wanted) {
+  const auto actual = std::to_integer<int>(read(kReadProgrammingStatus, 1)[0]);
+  if (actual == static_cast<int>(wanted)) return;
+  fail(behind(fmt::format("programming status {}", static_cast<int>(wanted))),
+       fmt::format("{}", actual));
+}
+
+void NodeBench::expect_true(bool is_so, std::string_view wanted, std::string_view otherwise) {
+  if (!is_so) fail(behind(std::string{wanted}), std::string{otherwise});
+}
+
+void NodeBench::expect_absent(BusAddress address) {
+  if (is_deaf()) return;
+  const auto written = write(address, {});
+  if (written.is_addressed) {
+    fail(behind(fmt::format("no acknowledgement of address {:02X}", address.value)), "one");
+  }
+}
+
+// ---- Time
+
+void NodeBench::settle() { pause(12ms + noise_); }
+
+void NodeBench::tick(std::uint16_t rate_hz) {
+  if (is_deaf()) return;
+  pause_until(next_tick_ + kMargin);
+  if (rate_hz != 0) rate_hz_ = rate_hz;
+  next_tick_ += instant_of(tick_period(rate_hz_)) - Instant{};
+}
+
+void NodeBench::wait_for_tick() {
+  constexpr Duration kAddress = 100us;  // until a node is asked for its first byte
+  if (!is_deaf()) pause_until(next_tick_ - kAddress - kMargin);
+}
+
+void NodeBench::expect_read_levels(int levels) {
+  const auto bytes = encode(static_cast<float>(levels) * 0.046875F);
+  expect_same(read_on(bytes.size()), bytes);
+}
+
+void NodeBench::expect_levels_at_ticks(std::initializer_list<int> levels) {
+  int number = 0;
+  const auto what = about_;
+  for (const auto level : levels) {
+    tick();
+    about(fmt::format("{}{}tick {}", what, what.empty() ? "" : ", ", ++number));
+    expect_levels(level);
+  }
+  about(what);
+}
+
+// ---- States
+
+bool NodeBench::is_alive() {
+  const auto written = write(subject_.address, {});
+  return written.is_addressed && !error();
+}
+
+void NodeBench::measure_noise() {
+  constexpr int kSamples = 20;
+  constexpr Duration kAlone = 200us;  // a byte is written, or read, in this time at 100 kHz
+  for (int i = 0; i < kSamples && !error(); ++i) {
+    const auto asked = now();
+    std::ignore = BusBench::read(subject_.address, 1);
+    noise_ = std::max<Duration>(noise_, now() - asked - kAlone);
+  }
+  find_motor();
+}
+
+void NodeBench::find_motor() {
+  if (subject_.motor != nullptr) return;
+  for (const auto& motor : motors()) {
+    const bool has_position = read(kReadPositionSet, 31) == bytes_of(motor.position_set);
+    const bool has_speed = read(kReadSpeedSet, 31) == bytes_of(motor.speed_set);
+    if (has_position || has_speed) subject_.motor = &motor;
+  }
+}
+
+const Motor& NodeBench::motor() {
+  if (subject_.motor != nullptr) return *subject_.motor;
+  skip("its motor is none of the known ones; say which in the target, as in ?motor=dcx22l");
+  return motors().front();
+}
+
+void NodeBench::power_up(std::int64_t shaft) {
+  touch("shaft", shaft);
+  touch("adc", 0);
+  rate_hz_ = kIdleRate;
+  next_tick_ = now() + (instant_of(tick_period(kIdleRate)) - Instant{});
+}
+
+/// What is not acknowledged here is for the cases to find.
+void NodeBench::prepare(const Command& command) {
+  if (!is_deaf()) std::ignore = write(subject_.address, encode(command));
+}
+
+void NodeBench::bring_to(std::size_t start) {
+  if (start == kListening) return;
+  if (start == kFresh) return power_up(0);
+  if (start == kFree) {
+    if (!subject_.is_free) power_up(1);
+    prepare(kCalibrationUnknown);
+    prepare(kDefaultControllers);
+    settle();
+    return prepare(kCalibrateZero);
+  }
+  if (start == kProgrammable) keep_sets();
+  prepare(kCalibrationUnknown);
+  // Before any mode is entered: what cases leave behind must never run.
+  if (!kept_sets_[0].empty() || start == kProgrammable) prepare(kDefaultControllers);
+  settle();
+  prepare(kPosition, 0.0F);
+  prepare(kSpeed, 0.0F);
+  prepare(kVoltage, 0.0F);
+  prepare(kCalibrationUnknown);
+  settle();
+  rest();
+  if (start != kUncalibrated) prepare(kCalibrateZero);
+}
+
+/// A shaft that was driven before comes to rest.
+void NodeBench::rest() {
+  constexpr int kMostTries = 400;
+  float before = number(kReadAngle);
+  for (int i = 0; i < kMostTries && !is_deaf(); ++i) {
+    settle();
+    if (const float now = number(kReadAngle); std::exchange(before, now) == now) return;
+  }
+}
+
+void NodeBench::keep_sets() {
+  if (!kept_sets_[0].empty() || is_deaf()) return;
+  constexpr std::array kSelectors{kReadPositionSet, kReadSpeedSet};
+  for (std::size_t i = 0; i < kSelectors.size(); ++i) {
+    const auto bytes = read(kSelectors[i], kLargestSetSize);
+    if (const auto set = decode_set(bytes); std::holds_alternative<ControllerSet>(set)) {
+      const auto encoded = encode(std::get<ControllerSet>(set));
+      kept_sets_[i].assign(encoded.view().begin(), encoded.view().end());
+    }
+  }
+}
+
+void NodeBench::put_sets_back() {
+  if (error()) return;
+  begin(profile(), 0);
+  for (const auto& set : kept_sets_) {
+    if (set.empty()) continue;
+    std::vector<std::byte> message{static_cast<std::byte>(kProgram)};
+    message.insert(message.end(), set.begin(), set.end());
+    send(kCalibrationUnknown);
+    send_bytes(message);
+    settle();
+  }
+}
+
+}  // namespace armjig::morap

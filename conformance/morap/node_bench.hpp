@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/bus_bench.hpp"
+#include "conformance/morap/motors.hpp"
+#include "conformance/stream_bench.hpp"
+#include "harness/wire/morap/message.hpp"
+
+namespace armjig::morap {
+
+/// The states in which cases begin, as indices into the suite's `starts`.
+enum Start : std::uint8_t {
+  kListening,     ///< as it is
+  kUncalibrated,  ///< calibration unknown, no mode
+  kDisabled,      ///< calibrated at 0 where it stands, no mode
+  kProgrammable,  ///< likewise, with the stored controllers; what was in use is put back at the end
+  kFresh,         ///< just switched on, the shaft held, all its ticks still to come
+  kFree,          ///< just switched on, the shaft free to turn, calibrated at 0
+};
+
+/// A conversation with a motor node, in the words of its protocol.
+class NodeBench final : public BusBench {
+ public:
+  struct Subject {
+    BusAddress address;
+    const Motor* motor = nullptr;  ///< none: it is found out, if it is a known one
+    bool is_free = false;          ///< the shaft of a real node turns
+  };
+  NodeBench(std::unique_ptr<BusPort> port, const Subject& subject);
+  NodeBench(const NodeBench&) = delete;
+  NodeBench& operator=(const NodeBench&) = delete;
+  ~NodeBench() override;
+
+  [[nodiscard]] bool is_alive() override;
+  void bring_to(std::size_t start) override;
+  void measure_noise() override;
+  [[nodiscard]] Duration noise() const override { return noise_; }
+
+  /// What comes next is about this: it stands behind every expectation until it is said anew.
+  void about(std::string what) { about_ = std::move(what); }
+
+  // Writing. A byte without acknowledgement is a finding.
+  void send(const Command& command);
+  void send(CommandId id) { send(Command{id}); }
+  void send(CommandId id, float value) { send(Command{id, value}); }
+  void send(const ControllerSet& set) { send(Command{CommandId::kProgram, set}); }
+  void tune(TuneKind kind, float inertia, float pole);
+  /// Bytes in hexadecimal digits.
+  void send_bytes(std::string_view hex, End end = End::kStop);
+  void send_bytes(Bytes bytes, End end = End::kStop);
+
+  // Reading: chooses, then reads in a transaction of its own.
+  [[nodiscard]] std::vector<std::byte> read(CommandId selector, std::size_t size);
+  /// Without choosing.
+  [[nodiscard]] std::vector<std::byte> read_on(std::size_t size);
+  [[nodiscard]] float number(CommandId selector);
+
+  // Expecting.
+  void expect_bytes(CommandId selector, std::string_view hex);
+  void expect_read_on(std::string_view hex);
+  void expect_same(Bytes actual, Bytes wanted);
+  void expect_number(CommandId selector, float wanted);  ///< bit for bit
+  void expect_near(CommandId selector, double wanted, double tolerance);
+  void expect_volts(float wanted) { expect_number(CommandId::kReadVoltage, wanted); }
+  /// The voltage of so many levels of 48/1024 V.
+  void expect_levels(int levels) { expect_volts(static_cast<float>(levels) * 0.046875F); }
+  void expect_status(MotorStatus wanted);
+  void expect_programming(ProgrammingStatus wanted);
+  void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
+  void expect_absent(BusAddress address);
+
+  // Time.
+  /// Long enough for what waits for a tick of any rate from 200 Hz on.
+  void settle();
+  /// Waits until just behind the next tick of a fresh node; from there on the node has `rate_hz`.
+  void tick(std::uint16_t rate_hz = 0);
+  void ticks(int count) {
+    for (int i = 0; i < count; ++i) tick();
+  }
+  /// Waits until a read just now would still be before the next tick.
+  void wait_for_tick();
+  /// The voltage that was chosen to be read.
+  void expect_read_levels(int levels);
+  /// Reads the voltage behind each of the next ticks.
+  void expect_levels_at_ticks(std::initializer_list<int> levels);
+
+  /// The motor of the node; skips the case if nobody knows it.
+  [[nodiscard]] const Motor& motor();
+  [[nodiscard]] BusAddress address() const noexcept { return subject_.address; }
+  /// Turns the held shaft.
+  void turn(int counts) { touch("encoder", counts); }
+  /// Only where nothing can be damaged: on an emulated node.
+  void needs_emulation() { touch("adc", 0); }
+
+ protected:
+  void forget_exchange() override;
+
+ private:
+  [[nodiscard]] std::string behind(std::string text) const;
+  void find_motor();
+  void keep_sets();
+  void put_sets_back();
+  void prepare(const Command& command);
+  void prepare(CommandId id) { prepare(Command{id}); }
+  void prepare(CommandId id, float value) { prepare(Command{id, value}); }
+  void rest();
+  void power_up(std::int64_t shaft);
+
+  Subject subject_;
+  std::string about_;
+  Duration noise_{};
+  std::array<std::vector<std::byte>, 2> kept_sets_;  ///< as they were before the first case
+  Instant next_tick_{};
+  std::uint16_t rate_hz_ = 0;
+};
+
+}  // namespace armjig::morap

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/kinovazed/defects/defective_server.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace armjig::kinovazed {
+namespace {
+
+std::string_view text_of(Bytes bytes) noexcept {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+DefectiveServer::DefectiveServer(Server server, std::vector<Quirk> quirks)
+    : fresh_{server},
+      server_{std::move(server)},
+      quirks_{std::move(quirks)},
+      memories_(quirks_.size()) {}
+
+bool DefectiveServer::is_listening() const noexcept {
+  return server_.life() == Server::Life::kRunning || server_.life() == Server::Life::kHung;
+}
+
+std::optional<ConnectionId> DefectiveServer::connect(Instant time) {
+  if (!server_.connect(inner(time))) return std::nullopt;
+  const auto id = next_id_++;
+  open_.insert(id);
+  for (std::size_t i = 0; i < quirks_.size(); ++i) {
+    std::string greeting;
+    if (quirks_[i].come) quirks_[i].come(greeting, memories_[i], open_.size());
+    say(time, id, greeting);
+  }
+  return id;
+}
+
+void DefectiveServer::receive(Instant time, ConnectionId id, Bytes segment) {
+  if (!is_known(id)) return;
+  if (quirks_.empty()) return server_.receive(inner(time), id - first_id_, segment);
+  std::string heard{text_of(segment)};
+  for (std::size_t i = 0; i < quirks_.size(); ++i) {
+    if (quirks_[i].hear) quirks_[i].hear(heard, memories_[i], server_.state());
+  }
+  server_.receive(inner(time), id - first_id_, std::as_bytes(std::span{heard}));
+}
+
+/// False: the process has never seen the client.
+bool DefectiveServer::leave(Instant time, ConnectionId id) {
+  if (!is_known(id)) return false;
+  for (std::size_t i = 0; i < quirks_.size(); ++i) {
+    std::string last_words;
+    if (quirks_[i].leave) quirks_[i].leave(last_words, memories_[i]);
+    if (last_words.empty()) continue;
+    server_.receive(inner(time), id - first_id_, std::as_bytes(std::span{last_words}));
+  }
+  return true;
+}
+
+void DefectiveServer::half_close(Instant time, ConnectionId id) {
+  if (leave(time, id)) server_.half_close(inner(time), id - first_id_);
+}
+
+void DefectiveServer::close(Instant time, ConnectionId id) {
+  open_.erase(id);
+  if (leave(time, id)) server_.close(inner(time), id - first_id_);
+}
+
+void DefectiveServer::reset(Instant time, ConnectionId id) {
+  open_.erase(id);
+  if (leave(time, id)) server_.reset(inner(time), id - first_id_);
+}
+
+std::size_t DefectiveServer::unread(ConnectionId id) const noexcept {
+  return is_known(id) ? server_.unread(id - first_id_) : 0;
+}
+
+void DefectiveServer::advance_to(Instant time) {
+  server_.advance_to(inner(time));
+  take_sent(time);
+}
+
+std::optional<Instant> DefectiveServer::next_event() const noexcept {
+  const auto of_server = server_.next_event();
+  std::optional<Instant> next;
+  if (of_server) next = *of_server + epoch_.time_since_epoch();
+  if (later_.empty()) return next;
+  return next ? std::min(*next, later_.front().time) : later_.front().time;
+}
+
+void DefectiveServer::take_sent(Instant time) {
+  for (const auto& event : server_.sent()) take(event);
+  server_.clear_sent();
+  const auto due = std::ranges::upper_bound(later_, time, {}, &ServerEvent::time);
+  std::move(later_.begin(), due, std::back_inserter(sent_));
+  later_.erase(later_.begin(), due);
+}
+
+void DefectiveServer::take(ServerEvent event) {
+  event.time += epoch_.time_since_epoch();
+  event.connection += first_id_;
+  if (event.kind != SessionEvent::Kind::kData) {
+    open_.erase(event.connection);
+    later_.insert(std::ranges::upper_bound(later_, event.time, {}, &ServerEvent::time), event);
+    return;
+  }
+  Saying saying{.text = std::string{text_of(event.bytes)}, .time = event.time};
+  for (std::size_t i = 0; i < quirks_.size(); ++i) {
+    if (quirks_[i].say) quirks_[i].say(saying, memories_[i], server_.state());
+  }
+  say(event.time + saying.delay, event.connection, saying.text);
+}
+
+void DefectiveServer::say(Instant time, ConnectionId id, std::string_view text) {
+  if (text.empty()) return;
+  const auto bytes = std::as_bytes(std::span{text});
+  later_.insert(std::ranges::upper_bound(later_, time, {}, &ServerEvent::time),
+                {time, id, SessionEvent::Kind::kData, {bytes.begin(), bytes.end()}});
+}
+
+bool DefectiveServer::set_input(Instant time, std::string_view name, std::int64_t value) {
+  if (name == "restart") {
+    restart(time);
+    return true;
+  }
+  bool is_known = false;
+  server_.touch(inner(time), [&](ArmPort& arm) { is_known = set_arm(arm, name, value); });
+  take_sent(time);
+  return is_known;
+}
+
+void DefectiveServer::restart(Instant time) {
+  for (const auto id : open_) later_.push_back({time, id, SessionEvent::Kind::kReset, {}});
+  open_.clear();
+  server_ = fresh_;
+  memories_.assign(quirks_.size(), {});
+  epoch_ = time;
+  first_id_ = next_id_;
+}
+
+bool DefectiveServer::set_arm(ArmPort& arm, std::string_view name, std::int64_t value) {
+  constexpr std::string_view kFail = "arm.fail.";
+  if (name.starts_with(kFail)) {
+    const auto call = find_word<ArmCall>(kArmCallNames, name.substr(kFail.size()));
+    if (!call) return false;
+    arm.fail(*call, {.skip = 0, .count = static_cast<int>(value)});
+    return true;
+  }
+  if (name == "arm.plugged") {
+    value == 0 ? arm.unplug() : arm.plug();
+    return true;
+  }
+  return std::visit(
+      [&](auto& plant) {
+        if (name == "arm.mode") plant.set_mode(static_cast<ArmMode>(value));
+        if (name == "arm.current") plant.set_current_sum(static_cast<float>(value) / 1000);
+        return name == "arm.mode" || name == "arm.current";
+      },
+      arm.plant());
+}
+
+}  // namespace armjig::kinovazed

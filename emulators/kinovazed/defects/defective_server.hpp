@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "emulators/kinovazed/defects/quirks.hpp"
+#include "emulators/kinovazed/server.hpp"
+
+namespace armjig::kinovazed {
+
+/// A server with quirks at its sockets, and what people can do at its machine. Without quirks it is
+/// the server itself. Times given never decrease.
+class DefectiveServer {
+ public:
+  explicit DefectiveServer(Server server, std::vector<Quirk> quirks = {});
+
+  [[nodiscard]] bool is_listening() const noexcept;
+  [[nodiscard]] std::optional<ConnectionId> connect(Instant time);
+  void receive(Instant time, ConnectionId id, Bytes segment);
+  void half_close(Instant time, ConnectionId id);
+  void close(Instant time, ConnectionId id);
+  void reset(Instant time, ConnectionId id);
+  [[nodiscard]] std::size_t unread(ConnectionId id) const noexcept;
+
+  /// Does at the server's machine or arm what no client can. False: nothing has that name.
+  ///
+  ///     restart           a new process and an arm that was just switched on; any value
+  ///     arm.plugged       0 or 1
+  ///     arm.fail.CALL     so many of the next calls fail, by `kArmCallNames`; -1: all
+  ///     arm.mode          what the arm reports, by `ArmMode`
+  ///     arm.current       of all joints together, in milliampere
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
+
+  void advance_to(Instant time);
+  [[nodiscard]] std::optional<Instant> next_event() const noexcept;
+  [[nodiscard]] std::span<const ServerEvent> sent() const noexcept { return sent_; }
+  void clear_sent() noexcept { sent_.clear(); }
+  [[nodiscard]] const std::deque<LogLine>& log() const noexcept { return server_.log(); }
+  void clear_log() noexcept { server_.clear_log(); }
+
+ private:
+  [[nodiscard]] bool is_known(ConnectionId id) const noexcept { return id >= first_id_; }
+  [[nodiscard]] Instant inner(Instant time) const noexcept { return Instant{time - epoch_}; }
+  void take_sent(Instant time);
+  void take(ServerEvent event);
+  void say(Instant time, ConnectionId id, std::string_view text);
+  [[nodiscard]] bool leave(Instant time, ConnectionId id);
+  void restart(Instant time);
+  [[nodiscard]] bool set_arm(ArmPort& arm, std::string_view name, std::int64_t value);
+
+  Server fresh_;  ///< as it is at the start of its process
+  Server server_;
+  std::vector<Quirk> quirks_;
+  std::vector<QuirkMemory> memories_;
+  Instant epoch_{};            ///< when the process began
+  ConnectionId first_id_ = 0;  ///< of the process; it counts from 0
+  ConnectionId next_id_ = 0;
+  std::set<ConnectionId> open_;
+  std::vector<ServerEvent> later_;  ///< by time
+  std::vector<ServerEvent> sent_;
+};
+
+}  // namespace armjig::kinovazed

@@ -1,0 +1,630 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/morap/defects/quirks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "harness/wire/morap/message.hpp"
+
+namespace armjig::morap {
+namespace {
+
+using namespace std::chrono_literals;
+using enum CommandId;
+using Words = std::vector<std::byte>;
+using Change = void (*)(Words& bytes, QuirkMemory& memory, const Node& node);
+
+CommandId id_of(const Words& command) noexcept {
+  return CommandId{std::to_integer<std::uint8_t>(command[0])};
+}
+bool is(const Words& command, CommandId id) noexcept {
+  return !command.empty() && id_of(command) == id;
+}
+bool is_known(CommandId id) noexcept {
+  return find_command(id) != nullptr || find_reading(id) != nullptr;
+}
+bool has_float(CommandId id) noexcept {
+  const auto* info = find_command(id);
+  return info != nullptr && info->payload == Payload::kFloat;
+}
+void become(Words& command, CommandId id) { command.assign(1, static_cast<std::byte>(id)); }
+
+/// Makes a message that is refused at its third byte, or whatever else is left of a command.
+void become_refused(Words& command) {
+  command = {std::byte{32}, std::byte{0}, std::byte{200}, std::byte{0}, std::byte{5}};
+}
+
+void set_float(Words& bytes, std::size_t place, float value) {
+  std::ranges::copy(encode(value), bytes.begin() + static_cast<std::ptrdiff_t>(place));
+}
+float float_at(const Words& bytes, std::size_t place) {
+  return load_f32_le(slice<4>(Bytes{bytes}, place));
+}
+constexpr std::size_t kInertiaPlace = 2;
+constexpr std::size_t kPolePlace = 6;
+
+// Commands that are taken for others.
+template <CommandId id, CommandId other>
+constexpr Change kTaken = [](Words& command, QuirkMemory&, const Node&) {
+  if (is(command, id)) become(command, other);
+};
+template <CommandId other>
+constexpr Change kUnknownTaken = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is_known(id_of(command))) become(command, other);
+};
+constexpr Change kSixBitIds = [](Words& command, QuirkMemory&, const Node&) {
+  const auto id = std::to_integer<unsigned>(command[0]);
+  if (id >= 64 && id < 128) command[0] = static_cast<std::byte>(id & 0x1FU);
+};
+
+// Parameter messages.
+template <class Edit>
+void edit_set(Words& command, Edit edit) {
+  if (!is(command, kProgram)) return;
+  const auto decoded = decode_set(Bytes{command}.subspan(1));
+  const auto* good = std::get_if<ControllerSet>(&decoded);
+  if (good == nullptr) return;
+  auto set = *good;
+  edit(set);
+  const auto bytes = encode(set);
+  std::ranges::copy(bytes.view(), command.begin() + 1);
+}
+template <class Edit>
+void edit_answer(Words& answer, Edit edit) {
+  const auto decoded = decode_set(answer);
+  const auto* good = std::get_if<ControllerSet>(&decoded);
+  if (good == nullptr) return;
+  auto set = *good;
+  edit(set);
+  const auto bytes = encode(set);
+  answer.assign(bytes.view().begin(), bytes.view().end());
+}
+bool answers_set(const Node& node) noexcept {
+  return find_reading(node.selected())->kind == ReadKind::kControllerSet;
+}
+
+/// Keeps the coefficients in the wrong order, or with the wrong sign, and reads them back right.
+template <Coefficients ControllerSet::* filter>
+void turn_round(ControllerSet& set) {
+  const auto count = static_cast<std::ptrdiff_t>((set.*filter).count);
+  std::reverse((set.*filter).values.begin(), (set.*filter).values.begin() + count);
+}
+template <Coefficients ControllerSet::* filter>
+void negate(ControllerSet& set) {
+  for (auto& value : (set.*filter).values) value = -value;
+}
+void negate_integral(ControllerSet& set) { set.integral = -set.integral; }
+void exchange_filters(ControllerSet& set) { std::swap(set.d, set.c); }
+template <void (*edit)(ControllerSet&)>
+constexpr Change kHearSet =
+    [](Words& command, QuirkMemory&, const Node&) { edit_set(command, edit); };
+template <void (*edit)(ControllerSet&)>
+constexpr Change kSaySet = [](Words& answer, QuirkMemory&, const Node& node) {
+  // Stored sets were not turned round when they came; only the default ones are stored.
+  if (answers_set(node)) edit_answer(answer, edit);
+};
+
+constexpr Change kKindsExchanged = [](Words& command, QuirkMemory&, const Node&) {
+  edit_set(command, [](ControllerSet& set) {
+    if (set.kind <= ControllerKind::kSpeed) {
+      set.kind =
+          set.kind == ControllerKind::kSpeed ? ControllerKind::kPosition : ControllerKind::kSpeed;
+    }
+  });
+};
+
+/// Takes a set with the checksum that `sum` makes of it, and no other.
+template <std::uint8_t (*sum)(Bytes payload)>
+constexpr Change kChecks = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kProgram) || command.size() < 1 + kSmallestSetSize) return;
+  const auto payload = Bytes{command}.subspan(1, command.size() - 2);
+  const auto good = checksum(payload);
+  const bool is_taken = std::to_integer<std::uint8_t>(command.back()) == sum(payload);
+  command.back() = static_cast<std::byte>(is_taken ? good : good + 1);
+};
+unsigned sum_of(Bytes payload) {
+  unsigned sum = 0;
+  for (const auto byte : payload) sum += std::to_integer<unsigned>(byte);
+  return sum;
+}
+std::uint8_t plain(Bytes payload) { return static_cast<std::uint8_t>(~checksum(payload)); }
+std::uint8_t unfolded(Bytes payload) { return static_cast<std::uint8_t>(~sum_of(payload)); }
+std::uint8_t folded_once(Bytes payload) {
+  const auto sum = sum_of(payload);
+  return static_cast<std::uint8_t>(~((sum >> 8U) + (sum & 0xFFU)));
+}
+std::uint8_t of_head(Bytes payload) { return checksum(payload.first(payload.size() - 4)); }
+constexpr Change kChecksNothing = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kProgram) || command.size() < 1 + kSmallestSetSize) return;
+  const auto payload = Bytes{command}.subspan(1, command.size() - 2);
+  command.back() = static_cast<std::byte>(checksum(payload));
+};
+constexpr Change kThreeAreMost = [](Words& command, QuirkMemory&, const Node&) {
+  bool has_four = false;
+  edit_set(command, [&](const ControllerSet& set) {
+    has_four = set.d.count == 4 || set.c.count == 4 || set.f.count == 4;
+  });
+  if (has_four) become_refused(command);
+};
+constexpr Change kOneIsLeast = [](Words& command, QuirkMemory&, const Node&) {
+  bool has_none = false;
+  edit_set(command, [&](const ControllerSet& set) {
+    has_none = set.d.count == 0 || set.c.count == 0 || set.f.count == 0;
+  });
+  if (has_none) become_refused(command);
+};
+/// A count of more than four is left without a word, in the filter number `filter`.
+template <std::size_t filter>
+constexpr Change kCountsUnchecked = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kProgram)) return;
+  const auto decoded = decode_set(Bytes{command}.subspan(1));
+  const auto* fault = std::get_if<SetFault>(&decoded);
+  if (fault == nullptr || fault->kind != SetFault::Kind::kCountAboveFour) return;
+  if (fault->offset == 3 + filter) command.clear();  // of messages without coefficients before it
+};
+/// Good and bad sets are installed, and bad ones reported.
+constexpr Change kInstallsBad = [](Words& command, QuirkMemory& memory, const Node& node) {
+  const auto before = command;
+  kChecksNothing(command, memory, node);
+  memory.count = is(command, kProgram) && command != before ? 1 : 0;
+};
+constexpr Change kSaysFailure = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  if (node.selected() == kReadProgrammingStatus && memory.count == 1) answer[0] = std::byte{3};
+};
+
+// What was written does not make a command.
+bool is_programming(const Words& command) noexcept {
+  return is(command, kProgram) || is(command, kTune);
+}
+constexpr Change kPadded = [](Words& command, QuirkMemory&, const Node&) {
+  if (has_float(id_of(command))) command.resize(kFloatCommandSize);
+};
+constexpr Change kTunesEarly = [](Words& command, QuirkMemory&, const Node&) {
+  if (is(command, kTune) && command.size() == kTuneCommandSize - 1) command.push_back({});
+};
+constexpr Change kCutFails = [](Words& command, QuirkMemory&, const Node&) {
+  if (is_programming(command)) become_refused(command);
+};
+constexpr Change kCutSucceeds = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kProgram)) return;
+  command.resize(1 + kSmallestSetSize);
+  for (const std::size_t place : {4U, 5U, 6U}) command[place] = std::byte{0};
+  command.back() = static_cast<std::byte>(checksum(Bytes{command}.subspan(1, 10)));
+};
+constexpr Change kJoined = [](Words& command, QuirkMemory& memory, const Node&) {
+  memory.bytes.insert(memory.bytes.end(), command.begin(), command.end());
+  command = memory.bytes;
+};
+constexpr Change kModeAtId = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (!has_float(id_of(command)) || is(command, kCalibrateAngle)) return;
+  memory.bytes.resize(kFloatCommandSize);
+  memory.bytes[0] = command[0];
+  command = memory.bytes;
+};
+constexpr Change kRemembersFloat = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (has_float(id_of(command))) memory.bytes = command;
+};
+constexpr Change kCutForgets = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (is_programming(command)) memory.count = 1;
+};
+constexpr Change kWholeReminds = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (is_programming(command)) memory.count = 0;
+};
+constexpr Change kSaysNothingDone = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  if (node.selected() == kReadProgrammingStatus && memory.count == 1) answer[0] = std::byte{1};
+};
+constexpr Change kStatusReadOnce = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  if (node.selected() != kReadProgrammingStatus) return;
+  if (memory.count++ > 0) answer[0] = std::byte{1};
+};
+constexpr Change kSurplusIsCommand = [](Words& command, QuirkMemory&, const Node&) {
+  command.erase(command.begin(), command.end() - 1);
+};
+constexpr Change kSurplusFails = [](Words& command, QuirkMemory&, const Node&) {
+  if (is_programming(command)) {
+    become_refused(command);
+  } else {
+    command.clear();
+  }
+};
+constexpr Change kSurplusDisables = [](Words& command, QuirkMemory&, const Node&) {
+  become(command, kCalibrationUnknown);
+};
+
+// Defaults.
+template <Eeprom (*stored)(std::uint8_t), ControllerSet Eeprom::* set>
+constexpr Change kOnlyOneDefault = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kDefaultControllers)) return;
+  const auto bytes = encode(Command{kProgram, stored(0).*set});
+  command.assign(bytes.view().begin(), bytes.view().end());
+};
+constexpr Change kNotesDefaults = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (is(command, kDefaultControllers)) memory.count = 1;
+  if (is_programming(command)) memory.count = 0;
+};
+template <std::uint8_t status>
+constexpr Change kSaysOfDefaults = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  if (node.selected() == kReadProgrammingStatus && memory.count == 1) answer[0] = std::byte{status};
+};
+
+// Tuning.
+template <class Edit>
+void edit_tuning(Words& command, Edit edit) {
+  if (!is(command, kTune)) return;
+  auto inertia = float_at(command, kInertiaPlace);
+  auto pole = float_at(command, kPolePlace);
+  edit(command[1], inertia, pole);
+  set_float(command, kInertiaPlace, inertia);
+  set_float(command, kPolePlace, pole);
+}
+using EditTuning = void (*)(std::byte& kind, float& inertia, float& pole);
+template <EditTuning edit>
+constexpr Change kTunes =
+    [](Words& command, QuirkMemory&, const Node&) { edit_tuning(command, edit); };
+constexpr std::byte kNoKind{9};
+constexpr EditTuning kAnyKind = [](std::byte& kind, float&, float&) {
+  if (kind > std::byte{2}) kind = std::byte{0};
+};
+constexpr EditTuning kHeavy = [](std::byte&, float& inertia, float&) {
+  inertia = std::min(inertia, 10.0F);
+};
+constexpr EditTuning kNegativeInertia = [](std::byte&, float& inertia, float&) {
+  inertia = std::fabs(inertia);
+};
+constexpr EditTuning kPositivePole = [](std::byte&, float&, float& pole) {
+  pole = -std::fabs(pole);
+};
+constexpr EditTuning kFastPole = [](std::byte&, float&, float& pole) {
+  pole = std::max(pole, -200.0F);
+};
+constexpr EditTuning kRefusesTen = [](std::byte& kind, float& inertia, float&) {
+  if (inertia >= 10.0F) kind = kNoKind;
+};
+constexpr EditTuning kRefuses200 = [](std::byte& kind, float&, float& pole) {
+  if (pole <= -200.0F) kind = kNoKind;
+};
+constexpr EditTuning kRefusesZeroPole = [](std::byte& kind, float&, float& pole) {
+  if (pole == 0.0F) kind = kNoKind;
+};
+constexpr EditTuning kPoleBounded = [](std::byte&, float&, float& pole) {
+  pole = std::max(pole, -100.0F * 0.5F);
+};
+constexpr EditTuning kPdForPid = [](std::byte& kind, float&, float&) {
+  if (kind == std::byte{1}) kind = std::byte{0};
+};
+constexpr EditTuning kDoubleInertia = [](std::byte&, float& inertia, float&) { inertia *= 2.0F; };
+template <ControllerKind kind, std::uint16_t from, std::uint16_t to>
+constexpr Change kRateSaid = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (!answers_set(node)) return;
+  edit_answer(answer, [](ControllerSet& set) {
+    if (set.kind == kind && set.rate_hz == from) set.rate_hz = to;
+  });
+};
+
+// Calibration. A count of the usual motor is 5.3e-5 rad.
+constexpr float kCount = 5.3078216e-5F;
+constexpr Change kRounds = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kCalibrateAngle)) return;
+  const auto angle = float_at(command, 1);
+  set_float(command, 1, angle + std::copysign(kCount / 2, angle));
+};
+constexpr Change kFloors = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kCalibrateAngle)) return;
+  const auto angle = float_at(command, 1);
+  if (angle < 0) set_float(command, 1, angle - kCount);
+};
+constexpr Change kNotesForgetting = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (is(command, kCalibrationUnknown)) memory.count = 1;
+  if (is(command, kCalibrateZero) || is(command, kCalibrateAngle)) memory.count = 0;
+};
+constexpr Change kForgottenAngle = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  if (node.selected() == kReadAngle && memory.count == 1) answer.assign(4, {});
+};
+constexpr Change kUncalibratedAngle = [](Words& answer, QuirkMemory&, const Node& node) {
+  const bool knows = node.status() != MotorStatus::kNeedsCalibration;
+  if (node.selected() == kReadAngle && !knows) answer.assign(4, {});
+};
+
+// References.
+template <CommandId forgetting>
+constexpr Change kNotes = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (is(command, forgetting)) memory.count = 1;
+  if (is(command, kPosition) || is(command, kSpeed)) memory.count = 0;
+};
+constexpr Change kForgottenReference = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  const bool is_reference =
+      node.selected() == kReadPositionReference || node.selected() == kReadSpeedReference;
+  if (is_reference && memory.count == 1) answer.assign(4, {});
+};
+constexpr Change kNotesReference = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (is(command, kPosition) || is(command, kSpeed)) memory.bytes = command;
+};
+constexpr Change kOneReference = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  const bool is_reference =
+      node.selected() == kReadPositionReference || node.selected() == kReadSpeedReference;
+  if (!is_reference || memory.bytes.empty()) return;
+  answer.assign(memory.bytes.begin() + 1, memory.bytes.end());
+};
+constexpr Change kBoundsReference = [](Words& command, QuirkMemory&, const Node&) {
+  if (!is(command, kPosition)) return;
+  const auto value = float_at(command, 1);
+  if (!(std::fabs(value) <= 100.0F)) set_float(command, 1, 100.0F);
+};
+constexpr Change kQuietsNan = [](Words& command, QuirkMemory&, const Node&) {
+  if (!has_float(id_of(command)) || !std::isnan(float_at(command, 1))) return;
+  command[3] |= std::byte{0x40};
+};
+constexpr Change kRefusesUncalibrated = [](Words& command, QuirkMemory&, const Node& node) {
+  const bool is_reference = has_float(id_of(command)) && !is(command, kCalibrateAngle);
+  if (is_reference && node.status() == MotorStatus::kNeedsCalibration) command.clear();
+};
+
+// Answers.
+template <CommandId selected>
+constexpr Change kSigned = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (node.selected() == selected && float_at(answer, 0) != 0.0F) answer[3] ^= std::byte{0x80};
+};
+constexpr Change kNotesVoltage = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (is(command, kVoltage) || is(command, kDirectVoltage)) memory.bytes = command;
+};
+constexpr Change kSaysRequest = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  const bool is_on = node.status() == MotorStatus::kEnabled && !memory.bytes.empty();
+  if (node.selected() != kReadVoltage || !is_on) return;
+  answer.assign(memory.bytes.begin() + 1, memory.bytes.end());
+};
+constexpr Change kCoarseVoltage = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (node.selected() != kReadVoltage) return;
+  constexpr float kStep = 0.09375F;  // half the resolution, as an older firmware had it
+  set_float(answer, 0, std::trunc(float_at(answer, 0) / kStep) * kStep);
+};
+constexpr Change kShiftedAddress = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (node.selected() == kReadAddress) answer[0] <<= 1;
+};
+constexpr Change kNodeForAddress = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (node.selected() == kReadAddress) answer[0] &= std::byte{0x07};
+};
+constexpr Change kStatusExchanged = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (node.selected() == kReadMotorStatus && answer[0] != std::byte{3}) answer[0] ^= std::byte{3};
+};
+constexpr Change kFilledWithOnes = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (answers_set(node)) answer.resize(256, std::byte{0xFF});
+};
+constexpr Change kEndsByteEarly = [](Words& answer, QuirkMemory&, const Node& node) {
+  if (answers_set(node)) answer.pop_back();
+};
+constexpr Change kByteOnce = [](Words& answer, QuirkMemory& memory, const Node& node) {
+  const auto* reading = find_reading(node.selected());
+  if (reading->kind == ReadKind::kByte && memory.count++ > 0) answer[0] = std::byte{0};
+};
+constexpr Change kNotesSelection = [](Words& command, QuirkMemory& memory, const Node&) {
+  if (find_reading(id_of(command)) != nullptr) memory.count = 0;
+};
+constexpr Change kModeForOneRead = [](Words& answer, QuirkMemory& memory, const Node&) {
+  if (memory.count++ > 0) std::ranges::fill(answer, std::byte{});
+};
+
+// The bus.
+constexpr auto kAnyNode = [](std::uint8_t address, const Node&) {
+  return (address & 0x78) == 0x10;
+};
+constexpr auto kGeneralCall = [](std::uint8_t address, const Node& node) {
+  return address == 0 || node.acknowledges(address);
+};
+constexpr auto kReserved = [](std::uint8_t address, const Node& node) {
+  return address >= 0x78 || node.acknowledges(address);
+};
+constexpr auto kSixBitAddress = [](std::uint8_t address, const Node& node) {
+  return (address & 0x3F) == node.address();
+};
+constexpr auto kNacksUnknown = [](Bytes written, const Node&) {
+  return !is_known(CommandId{std::to_integer<std::uint8_t>(written[0])});
+};
+constexpr auto kNacksSurplus = [](Bytes written, const Node&) {
+  const auto decoded = decode_command(written);
+  const auto* command = std::get_if<DecodedCommand>(&decoded);
+  return command != nullptr && written.size() > command->size;
+};
+template <std::size_t byte>
+constexpr auto kNacksByte = [](Bytes written, const Node&) { return written.size() == byte; };
+constexpr auto kNacksBrake = [](Bytes written, const Node&) {
+  return written[0] == std::byte{14} || written[0] == std::byte{15};
+};
+constexpr auto kNacksRefused = [](Bytes written, const Node&) {
+  const auto decoded = decode_command(written);
+  const auto* fault = std::get_if<CommandFault>(&decoded);
+  return fault != nullptr && fault->kind == CommandFault::Kind::kBadSet;
+};
+constexpr auto kHoldsLong = [](Bytes written, bool is_read) -> Duration {
+  return !is_read && written.size() == kTuneCommandSize ? 20ms : 0ms;
+};
+constexpr auto kHoldsAddress = [](Bytes written, bool is_read) -> Duration {
+  return is_read && written.empty() ? 8ms : 0ms;
+};
+
+constexpr auto kQuirks = std::to_array<Quirk>({
+    {.name = "six-bit-ids", .section = "Commands", .hear = kSixBitIds},
+    {.name = "unknown-forgets", .section = "Commands", .hear = kUnknownTaken<kCalibrationUnknown>},
+    {.name = "unknown-selects", .section = "Reading", .hear = kUnknownTaken<kReadAngle>},
+    {.name = "trajectory-disables", .section = "Commands", .hear = kTaken<kTrajectory, kDisable>},
+    {.name = "led-on-forgets", .section = "Commands", .hear = kTaken<kLedOn, kCalibrationUnknown>},
+    {.name = "led-off-forgets",
+     .section = "Commands",
+     .hear = kTaken<kLedOff, kCalibrationUnknown>},
+    {.name = "led-toggle-forgets",
+     .section = "Commands",
+     .hear = kTaken<kLedToggle, kCalibrationUnknown>},
+    {.name = "brake-14-disables", .section = "Commands", .hear = kTaken<kBrake14, kDisable>},
+    {.name = "brake-15-disables", .section = "Commands", .hear = kTaken<kBrake15, kDisable>},
+    {.name = "brake-14-selects", .section = "Reading", .hear = kTaken<kBrake14, kReadAngle>},
+    {.name = "brake-15-forgets",
+     .section = "Commands",
+     .hear = kTaken<kBrake15, kCalibrationUnknown>},
+    {.name = "disable-forgets", .section = "Status", .hear = kTaken<kDisable, kCalibrationUnknown>},
+    {.name = "forgetting-disables",
+     .section = "Status",
+     .hear = kTaken<kCalibrationUnknown, kDisable>},
+    {.name = "d-order",
+     .section = "Feedback",
+     .hear = kHearSet<turn_round<&ControllerSet::d>>,
+     .say = kSaySet<turn_round<&ControllerSet::d>>},
+    {.name = "c-order",
+     .section = "Feedback",
+     .hear = kHearSet<turn_round<&ControllerSet::c>>,
+     .say = kSaySet<turn_round<&ControllerSet::c>>},
+    {.name = "f-order",
+     .section = "Feedback",
+     .hear = kHearSet<turn_round<&ControllerSet::f>>,
+     .say = kSaySet<turn_round<&ControllerSet::f>>},
+    {.name = "d-sign",
+     .section = "Feedback",
+     .hear = kHearSet<negate<&ControllerSet::d>>,
+     .say = kSaySet<negate<&ControllerSet::d>>},
+    {.name = "c-sign",
+     .section = "Feedback",
+     .hear = kHearSet<negate<&ControllerSet::c>>,
+     .say = kSaySet<negate<&ControllerSet::c>>},
+    {.name = "f-sign",
+     .section = "Feedback",
+     .hear = kHearSet<negate<&ControllerSet::f>>,
+     .say = kSaySet<negate<&ControllerSet::f>>},
+    {.name = "integral-sign",
+     .section = "Feedback",
+     .hear = kHearSet<negate_integral>,
+     .say = kSaySet<negate_integral>},
+    {.name = "filters-exchanged",
+     .section = "Feedback",
+     .hear = kHearSet<exchange_filters>,
+     .say = kSaySet<exchange_filters>},
+    {.name = "kinds-exchanged", .section = "Programming", .hear = kKindsExchanged},
+    {.name = "checksum-ignored", .section = "Programming", .hear = kChecksNothing},
+    {.name = "checksum-plain", .section = "Programming", .hear = kChecks<plain>},
+    {.name = "checksum-unfolded", .section = "Programming", .hear = kChecks<unfolded>},
+    {.name = "checksum-folded-once", .section = "Programming", .hear = kChecks<folded_once>},
+    {.name = "checksum-of-head", .section = "Programming", .hear = kChecks<of_head>},
+    {.name = "three-are-most", .section = "Programming", .hear = kThreeAreMost},
+    {.name = "one-is-least", .section = "Programming", .hear = kOneIsLeast},
+    {.name = "count-unchecked-d", .section = "Programming", .hear = kCountsUnchecked<0>},
+    {.name = "count-unchecked-c", .section = "Programming", .hear = kCountsUnchecked<1>},
+    {.name = "count-unchecked-f", .section = "Programming", .hear = kCountsUnchecked<2>},
+    {.name = "installs-bad", .section = "Programming", .hear = kInstallsBad, .say = kSaysFailure},
+    {.name = "padded-float", .section = "Writing", .finish = kPadded},
+    {.name = "tunes-early", .section = "Tuning", .finish = kTunesEarly},
+    {.name = "cut-fails", .section = "Programming", .finish = kCutFails},
+    {.name = "cut-succeeds", .section = "Programming", .finish = kCutSucceeds},
+    {.name = "cut-forgets",
+     .section = "Programming",
+     .hear = kWholeReminds,
+     .finish = kCutForgets,
+     .say = kSaysNothingDone},
+    {.name = "pieces-joined", .section = "Writing", .finish = kJoined},
+    {.name = "mode-at-id", .section = "Writing", .hear = kRemembersFloat, .finish = kModeAtId},
+    {.name = "status-read-once",
+     .section = "Programming",
+     .hear = kWholeReminds,
+     .say = kStatusReadOnce},
+    {.name = "surplus-is-command", .section = "Writing", .surplus = kSurplusIsCommand},
+    {.name = "surplus-fails", .section = "Writing", .surplus = kSurplusFails},
+    {.name = "surplus-forgets", .section = "Writing", .surplus = kSurplusDisables},
+    {.name = "defaults-only-position",
+     .section = "Programming",
+     .hear = kOnlyOneDefault<dcx22l, &Eeprom::position>},
+    {.name = "defaults-only-speed",
+     .section = "Programming",
+     .hear = kOnlyOneDefault<dcx22l, &Eeprom::speed>},
+    {.name = "defaults-succeed",
+     .section = "Programming",
+     .hear = kNotesDefaults,
+     .say = kSaysOfDefaults<2>},
+    {.name = "defaults-fail",
+     .section = "Programming",
+     .hear = kNotesDefaults,
+     .say = kSaysOfDefaults<3>},
+    {.name = "tunes-any-kind", .section = "Tuning", .hear = kTunes<kAnyKind>},
+    {.name = "tunes-heavy", .section = "Tuning", .hear = kTunes<kHeavy>},
+    {.name = "tunes-negative-inertia", .section = "Tuning", .hear = kTunes<kNegativeInertia>},
+    {.name = "tunes-positive-pole", .section = "Tuning", .hear = kTunes<kPositivePole>},
+    {.name = "tunes-fast-pole", .section = "Tuning", .hear = kTunes<kFastPole>},
+    {.name = "tunes-below-ten", .section = "Tuning", .hear = kTunes<kRefusesTen>},
+    {.name = "tunes-below-200", .section = "Tuning", .hear = kTunes<kRefuses200>},
+    {.name = "tunes-no-zero-pole", .section = "Tuning", .hear = kTunes<kRefusesZeroPole>},
+    {.name = "tunes-to-fifty", .section = "Tuning", .hear = kTunes<kPoleBounded>},
+    {.name = "tunes-pd-for-pid", .section = "Tuning", .hear = kTunes<kPdForPid>},
+    {.name = "tunes-double-inertia", .section = "Tuning", .hear = kTunes<kDoubleInertia>},
+    {.name = "position-never-625",
+     .section = "Tuning",
+     .say = kRateSaid<ControllerKind::kPosition, 625, 400>},
+    {.name = "position-never-400",
+     .section = "Tuning",
+     .say = kRateSaid<ControllerKind::kPosition, 400, 625>},
+    {.name = "speed-never-625",
+     .section = "Tuning",
+     .say = kRateSaid<ControllerKind::kSpeed, 625, 400>},
+    {.name = "speed-never-400",
+     .section = "Tuning",
+     .say = kRateSaid<ControllerKind::kSpeed, 400, 320>},
+    {.name = "speed-never-320",
+     .section = "Tuning",
+     .say = kRateSaid<ControllerKind::kSpeed, 320, 400>},
+    {.name = "calibration-rounds", .section = "Calibration", .hear = kRounds},
+    {.name = "calibration-floors", .section = "Calibration", .hear = kFloors},
+    {.name = "forgetting-clears-angle",
+     .section = "Calibration",
+     .hear = kNotesForgetting,
+     .say = kForgottenAngle},
+    {.name = "no-uncalibrated-angle", .section = "Calibration", .say = kUncalibratedAngle},
+    {.name = "disabling-clears-references",
+     .section = "References",
+     .hear = kNotes<kDisable>,
+     .say = kForgottenReference},
+    {.name = "forgetting-clears-references",
+     .section = "References",
+     .hear = kNotes<kCalibrationUnknown>,
+     .say = kForgottenReference},
+    {.name = "calibrating-clears-references",
+     .section = "References",
+     .hear = kNotes<kCalibrateZero>,
+     .say = kForgottenReference},
+    {.name = "one-reference",
+     .section = "References",
+     .hear = kNotesReference,
+     .say = kOneReference},
+    {.name = "bounded-reference", .section = "References", .hear = kBoundsReference},
+    {.name = "quiet-nan", .section = "References", .hear = kQuietsNan},
+    {.name = "refuses-uncalibrated", .section = "References", .hear = kRefusesUncalibrated},
+    {.name = "angle-sign", .section = "Reading", .say = kSigned<kReadAngle>},
+    {.name = "voltage-sign", .section = "Output", .say = kSigned<kReadVoltage>},
+    {.name = "current-sign", .section = "Output", .say = kSigned<kReadCurrent>},
+    {.name = "voltage-as-asked", .section = "Output", .hear = kNotesVoltage, .say = kSaysRequest},
+    {.name = "voltage-coarse", .section = "Output", .say = kCoarseVoltage},
+    {.name = "address-shifted", .section = "Reading", .say = kShiftedAddress},
+    {.name = "address-is-node", .section = "Reading", .say = kNodeForAddress},
+    {.name = "status-exchanged", .section = "Status", .say = kStatusExchanged},
+    {.name = "set-filled-with-ones", .section = "Reading", .say = kFilledWithOnes},
+    {.name = "set-without-checksum", .section = "Reading", .say = kEndsByteEarly},
+    {.name = "byte-once", .section = "Reading", .hear = kNotesSelection, .say = kByteOnce},
+    {.name = "mode-for-one-read",
+     .section = "Reading",
+     .hear = kNotesSelection,
+     .say = kModeForOneRead},
+    {.name = "any-node", .section = "Bus", .acknowledges = kAnyNode},
+    {.name = "general-call", .section = "Bus", .acknowledges = kGeneralCall},
+    {.name = "reserved-addresses", .section = "Bus", .acknowledges = kReserved},
+    {.name = "six-bit-address", .section = "Bus", .acknowledges = kSixBitAddress},
+    {.name = "nacks-unknown", .section = "Bus", .refuses = kNacksUnknown},
+    {.name = "nacks-surplus", .section = "Bus", .refuses = kNacksSurplus},
+    {.name = "nacks-float-end", .section = "Bus", .refuses = kNacksByte<5>},
+    {.name = "nacks-tune-end", .section = "Bus", .refuses = kNacksByte<10>},
+    {.name = "nacks-brake", .section = "Bus", .refuses = kNacksBrake},
+    {.name = "nacks-refused", .section = "Bus", .refuses = kNacksRefused},
+    {.name = "holds-long", .section = "Bus", .stretch = kHoldsLong},
+    {.name = "holds-reads", .section = "Bus", .stretch = kHoldsAddress},
+});
+
+}  // namespace
+
+std::span<const Quirk> quirks() noexcept { return kQuirks; }
+
+}  // namespace armjig::morap

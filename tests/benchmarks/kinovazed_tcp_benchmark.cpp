@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pipelined commands over loopback TCP against the documented server whose arm takes no time, and
+// as a baseline lines of the same length against a bare loop that sends each line back.
+#include <benchmark/benchmark.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "emulators/host/hosted_server.hpp"
+#include "emulators/host/session_host.hpp"
+#include "emulators/kinovazed/server.hpp"
+#include "harness/link/descriptor.hpp"
+#include "harness/link/tcp_session.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kWindow = 512;  ///< lines on their way
+constexpr std::string_view kCommand = "EStop\r\n";
+constexpr std::string_view kReply = "Accepted\r\n";
+
+/// Sends the window and reads until as many bytes have come as `bytes_back` for each line.
+void ping(benchmark::State& state, const std::string& address, std::string_view line,
+          std::size_t bytes_back) {
+  const auto session = *make_tcp_session(address);
+  if (!session->connect(session->now() + 1s)) return state.SkipWithError("cannot connect");
+  std::string window;
+  for (int i = 0; i < kWindow; ++i) window += line;
+  std::array<std::byte, 65536> buffer;
+  for (auto _ : state) {
+    if (!session->send(std::as_bytes(std::span{window}))) state.SkipWithError("cannot send");
+    for (std::size_t heard = 0; heard < kWindow * bytes_back;) {
+      const auto received = session->receive(buffer, session->now() + 5s);
+      if (!received || received->arrival != SessionPort::Arrival::kData) {
+        return state.SkipWithError("no answer");
+      }
+      heard += received->size;  // a beat now and then is an error of one in a million
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * kWindow);
+}
+
+void documented_server(benchmark::State& state) {
+  kinovazed::ServerOptions options;
+  options.behaviour = kinovazed::kDocumentedBehaviour;
+  options.call_time = {};
+  kinovazed::Server server{kinovazed::ArmPort{kinovazed::JacoArm{}}, options};
+  auto host = SessionHost::open(make_hosted_server(std::move(server)), {.tcp = {.port = 0}});
+  std::thread thread{[&host] { host->run(); }};
+  ping(state, host->target().substr(4), kCommand, kReply.size());
+  host->stop();
+  thread.join();
+}
+BENCHMARK(documented_server)->UseRealTime();
+
+/// Reads, cuts into lines, sends each back, until the client has gone.
+void echo_lines(int listener) {
+  const Descriptor client{::accept(listener, nullptr, nullptr)};
+  std::array<char, 16384> buffer;
+  std::string line;
+  std::string out;
+  for (;;) {
+    const auto size = ::recv(client.value(), buffer.data(), buffer.size(), 0);
+    if (size <= 0) return;
+    for (const char c : std::string_view{buffer.data(), static_cast<std::size_t>(size)}) {
+      line.push_back(c);
+      if (c != '\n') continue;
+      out += line;
+      line.clear();
+    }
+    for (std::string_view rest = out; !rest.empty();) {
+      const auto sent = ::send(client.value(), rest.data(), rest.size(), MSG_NOSIGNAL);
+      if (sent <= 0) return;
+      rest.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    out.clear();
+  }
+}
+
+void line_echo(benchmark::State& state) {
+  const Descriptor listener{::socket(AF_INET, SOCK_STREAM, 0)};
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof place;
+  auto* const address = reinterpret_cast<sockaddr*>(&place);
+  ::bind(listener.value(), address, size);
+  ::listen(listener.value(), 1);
+  ::getsockname(listener.value(), address, &size);
+  std::thread thread{[&listener] { echo_lines(listener.value()); }};
+  ping(state, "127.0.0.1:" + std::to_string(ntohs(place.sin_port)), kReply, kReply.size());
+  thread.join();
+}
+BENCHMARK(line_echo)->UseRealTime();
+
+}  // namespace
+}  // namespace armjig
