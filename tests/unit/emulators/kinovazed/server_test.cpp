@@ -75,7 +75,8 @@ TEST(KinovaServer, AnswersAsTheMatrixOfTheRecordingsSays) {
       replies += text.ends_with("\r\n") ? text : text + "\r\n";
     }
     EXPECT_EQ(bench.heard(bench.client), replies) << cell.dump();
-    EXPECT_EQ(to_string(bench.server.state()), cell["next_state"].get<std::string>()) << cell.dump();
+    EXPECT_EQ(to_string(bench.server.state()), cell["next_state"].get<std::string>())
+        << cell.dump();
   }
 }
 
