@@ -36,9 +36,10 @@ void add_bus_target_options(CLI::App& app, TargetOptions& options) {
   app.add_option("--target", options.target,
                  "the bus: emulated:[?OPTION=VALUE&...], i2c:/dev/i2c-N or i2c-tiny-usb:[SERIAL]")
       ->type_name("TARGET");
-  app.add_option("--allow", options.allow,
-                 "what may be done to devices that are not emulated: state,move,grip or all "
-                 "(default: only look)")
+  app.add_option(
+         "--allow", options.allow,
+         "what may be done to devices that are not emulated: state,move,grip,program or all "
+         "(default: only look)")
       ->type_name("LIST");
 }
 

@@ -122,7 +122,7 @@ class NodeJudge final : public BusJudge {
   /// Cut short or unknown, it does nothing. A set that is refused changes the programming status.
   static std::optional<Refusal> judge_incomplete(Bytes data, const Permissions& permissions) {
     const bool is_set = !data.empty() && data[0] == static_cast<std::byte>(CommandId::kProgram);
-    return is_set ? demand(Hazard::kState, permissions, "programming") : std::nullopt;
+    return is_set ? demand(Hazard::kProgram, permissions, "programming") : std::nullopt;
   }
 
   static std::optional<Refusal> judge_command(CommandId id, Drive drive,
@@ -131,7 +131,10 @@ class NodeJudge final : public BusJudge {
     const bool changes_loop = is_calibration(id) || id == CommandId::kProgram ||
                               id == CommandId::kDefaultControllers || id == CommandId::kTune;
     if (!changes_loop) return std::nullopt;
-    if (drive == Drive::kStands) return demand(Hazard::kState, permissions, find_command(id)->name);
+    if (drive == Drive::kStands) {
+      const auto hazard = is_calibration(id) ? Hazard::kState : Hazard::kProgram;
+      return demand(hazard, permissions, find_command(id)->name);
+    }
     return demand(Hazard::kMove, permissions,
                   std::string{find_command(id)->name} +
                       " of a node that may follow a reference (disable it first, or it)");

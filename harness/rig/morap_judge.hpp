@@ -14,9 +14,9 @@ namespace armjig::morap {
 /// reading it, and writes so long that a byte counter wraps.
 ///
 /// A reference moves. So does calibration, unless this judge has seen the node disabled since the
-/// last reference: one that was sent before is followed from then on. Programming and tuning change
-/// the state of a node that is known to stand, and move otherwise. Writing to a device that is
-/// neither node nor pen is taken for a change of its state.
+/// last reference: one that was sent before is followed from then on. Programming and tuning need
+/// permission to program if the node is known to stand, and to move otherwise. Writing to a device
+/// that is neither node nor pen is taken for a change of its state.
 [[nodiscard]] std::unique_ptr<BusJudge> make_judge();
 
 }  // namespace armjig::morap

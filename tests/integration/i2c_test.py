@@ -80,7 +80,7 @@ def rows():
         ([ARMJIG, "i2c", "write", "0x12", "01 00 00 80 3F", "--target", "i2c:/dev/i2c-1"], 3,
          ["!--allow move"]),
         ([ARMJIG, "morap", "tune", "--type", "pd", "--inertia", "0.2", "--pole", "-9", "--target",
-          "i2c:/dev/i2c-1", "--node", "2", "--allow", "state"], 0, ["rate_hz = 400"]),
+          "i2c:/dev/i2c-1", "--node", "2", "--allow", "program"], 0, ["rate_hz = 400"]),
         ([ARMJIG, "morap", "read-params", "--target", "i2c:/dev/i2c-1", "--node", "5"], 3, ["!0x15"]),
         (["sh", "-c", "exit 42"], 42, []),
         (["sh", "-c", "kill -TERM $$"], 128 + 15, []),

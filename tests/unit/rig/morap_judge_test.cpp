@@ -54,13 +54,13 @@ TEST_F(MorapJudge, TakesCalibrationForMotionUnlessTheNodeIsKnownToStand) {
   EXPECT_FALSE(lets(kNode, "11 00 00 80 3F", "state"));
 }
 
-TEST_F(MorapJudge, AsksForStateBeforeProgrammingANodeThatStands) {
+TEST_F(MorapJudge, AsksForProgramBeforeProgrammingANodeThatStands) {
   constexpr auto kTune = "22 00 CD CC 4C 3E 00 00 10 C1";
-  EXPECT_FALSE(lets(kNode, kTune, "state"));
+  EXPECT_FALSE(lets(kNode, kTune, "program"));
   EXPECT_TRUE(lets(kNode, "00", ""));
-  EXPECT_FALSE(lets(kNode, kTune, ""));
-  EXPECT_TRUE(lets(kNode, kTune, "state"));
-  EXPECT_TRUE(lets(kNode, "21", "state"));
+  EXPECT_FALSE(lets(kNode, kTune, "state"));
+  EXPECT_TRUE(lets(kNode, kTune, "program"));
+  EXPECT_TRUE(lets(kNode, "21", "program"));
   EXPECT_FALSE(lets(kNode, "20 00 01", "")) << "cut short it still changes the status";
 }
 
