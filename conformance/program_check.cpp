@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "conformance/morap/host/checker.hpp"
 #include "conformance/parol6/host/checker.hpp"
 #include "harness/core/version.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 constexpr std::size_t kRemembered = 3;
 
 constexpr std::array kChecks{
+    ProgramCheckEntry{"morap", morap::host_requirements, morap::make_host_checker},
     ProgramCheckEntry{"parol6", parol6::host_requirements, parol6::make_host_checker},
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "conformance/morap/chapters.hpp"
+#include "conformance/morap/host/checker.hpp"
 #include "conformance/morap/target.hpp"
 
 namespace armjig::morap {
@@ -33,6 +34,7 @@ Suite suite() noexcept {
       Chapter{"A free shaft", motion_requirements(), motion_cases()},
       Chapter{"Where the document differs", documented_requirements(), documented_cases()},
       Chapter{"Pen", pen_requirements(), {}},
+      Chapter{"Masters", host_requirements(), {}},
   };
   return {"morap", "0.1", kChapters, kStarts, open_node};
 }

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/morap/host/checker.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "harness/core/hex.hpp"
+#include "harness/wire/morap/message.hpp"
+#include "harness/wire/morap/pen.hpp"
+
+namespace armjig::morap {
+namespace {
+
+using namespace std::chrono_literals;
+using enum CommandId;
+
+constexpr Duration kProgramPause = 10ms;
+constexpr Duration kPenPause = 25ms;
+constexpr float kMostVolts = 20.0F;
+constexpr std::uint16_t kMostRate = 1500;
+
+bool is_reference(CommandId id) noexcept { return id >= kPosition && id <= kTorque; }
+bool is_calibration(CommandId id) noexcept { return id == kCalibrateZero || id == kCalibrateAngle; }
+bool is_programming(CommandId id) noexcept {
+  return id == kProgram || id == kDefaultControllers || id == kTune;
+}
+bool has_number(CommandId id) noexcept {
+  const auto* info = find_command(id);
+  return info != nullptr && info->payload == Payload::kFloat;
+}
+
+/// What a master has told one node.
+struct Told {
+  bool is_calibrated = false;
+  bool is_enabled = false;
+  bool is_unverified = false;  ///< programmed, and the status was not read since
+  CommandId selected = kReadAngle;
+  std::optional<Instant> programmed{};
+};
+
+class HostChecker final : public ProgramChecker {
+ public:
+  explicit HostChecker(const LinkNoise& noise) : noise_{noise.most} {}
+
+  void to_device(Instant time, Bytes transaction) override {
+    now_ = time;
+    if (transaction.empty()) return;
+    const auto address = address_of(transaction);
+    const auto data = transaction.subspan(1);
+    if (data.empty()) return;  // a poke
+    ++messages_;
+    if (address == pen::kAddress) return judge_pen(data);
+    if (address < kNodeBaseAddress || address >= 2 * kNodeBaseAddress) return;  // somebody else
+    if (address > node_address(kLastDocumentedNode)) {
+      complain("addresses", fmt::format("address {:02X}", address));
+    }
+    judge_command(nodes_[address], data);
+  }
+
+  void from_device(Instant time, Bytes transaction) override {
+    now_ = time;
+    if (transaction.empty()) return;
+    const auto address = address_of(transaction);
+    if (address == pen::kAddress) return complain("pen-read", "a read of the pen");
+    const auto node = nodes_.find(address);
+    if (node != nodes_.end()) judge_read(node->second, transaction.subspan(1));
+  }
+
+  void finish(Instant time) override {
+    now_ = time;
+    for (const auto& [address, told] : nodes_) {
+      if (told.is_enabled) complain("ends-disabled", fmt::format("node {:02X} is", address));
+    }
+  }
+
+  [[nodiscard]] std::size_t messages() const noexcept override { return messages_; }
+
+ private:
+  static std::uint8_t address_of(Bytes transaction) noexcept {
+    return static_cast<std::uint8_t>(std::to_integer<unsigned>(transaction[0]) >> 1U);
+  }
+
+  /// `name` is what stands behind `morap.host.`.
+  void complain(std::string_view name, std::string what) {
+    for (const auto& requirement : host_requirements()) {
+      if (requirement.id.substr(kPrefix.size()) == name) add(now_, requirement.id, std::move(what));
+    }
+  }
+
+  void judge_command(Told& told, Bytes data) {
+    const CommandId id{std::to_integer<std::uint8_t>(data[0])};
+    const auto decoded = decode_command(data);
+    if (const auto* fault = std::get_if<CommandFault>(&decoded)) return judge_fault(*fault, data);
+    const auto& [command, size] = std::get<DecodedCommand>(decoded);
+    if (data.size() > size) {
+      complain(has_number(id) ? "overlong-number" : "surplus",
+               fmt::format("{} bytes behind {}", data.size() - size, static_cast<int>(id)));
+    }
+    if (find_reading(id) != nullptr) told.selected = id;
+    judge_payload(command);
+    judge_order(told, id);
+  }
+
+  void judge_fault(const CommandFault& fault, Bytes data) {
+    switch (fault.kind) {
+      case CommandFault::Kind::kUnknownId:
+        return complain("known-ids", to_hex_dump(data.first(1)));
+      case CommandFault::Kind::kTooShort:
+        return complain("whole-command", to_hex_dump(data));
+      case CommandFault::Kind::kBadSet:
+        return complain(fault.set.kind == SetFault::Kind::kCountAboveFour ? "counts" : "checksum",
+                        fmt::format("byte {} of the parameters", fault.set.offset));
+      case CommandFault::Kind::kEmpty:
+        break;
+    }
+  }
+
+  void judge_payload(const Command& command) {
+    if (const auto* number = std::get_if<float>(&command.payload)) {
+      judge_number(command.id, *number);
+    } else if (const auto* set = std::get_if<ControllerSet>(&command.payload)) {
+      judge_set(*set);
+    } else if (const auto* request = std::get_if<TuneRequest>(&command.payload)) {
+      judge_tuning(*request);
+    }
+    if (command.id == kBrake14 || command.id == kBrake15) {
+      complain("no-brake", fmt::format("identifier {}", static_cast<int>(command.id)));
+    }
+  }
+
+  void judge_number(CommandId id, float number) {
+    if (!std::isfinite(number)) return complain("finite", fmt::format("{}", number));
+    if (id == kDirectVoltage) complain("no-direct-voltage", fmt::format("{} V", number));
+    const bool is_voltage = id == kVoltage || id == kDirectVoltage;
+    if (is_voltage && std::fabs(number) > kMostVolts) {
+      complain("voltage", fmt::format("{} V", number));
+    }
+  }
+
+  void judge_set(const ControllerSet& set) {
+    if (set.kind > ControllerKind::kSpeed) {
+      complain("kind", fmt::format("kind {}", static_cast<int>(set.kind)));
+    }
+    if (set.rate_hz == 0 || set.rate_hz > kMostRate) {
+      complain("rate", fmt::format("{} Hz", set.rate_hz));
+    }
+    bool are_numbers = std::isfinite(set.integral);
+    for (const auto* filter : {&set.d, &set.c, &set.f}) {
+      if (filter->count == 0) complain("counts", "a filter without coefficients");
+      for (std::size_t i = 0; i < filter->count; ++i) {
+        are_numbers = are_numbers && std::isfinite(filter->values[i]);
+      }
+    }
+    if (!are_numbers) complain("coefficients", "one is none");
+  }
+
+  void judge_tuning(const TuneRequest& request) {
+    if (request.kind > TuneKind::kPiSpeed) {
+      complain("tune-kind", fmt::format("kind {}", static_cast<int>(request.kind)));
+    }
+    if (!(request.inertia > 0.0F && request.inertia <= 10.0F)) {
+      complain("tune-inertia", fmt::format("{}", request.inertia));
+    }
+    if (!(request.pole >= -200.0F && request.pole < 0.0F)) {
+      complain("tune-pole", fmt::format("{}", request.pole));
+    }
+  }
+
+  void judge_order(Told& told, CommandId id) {
+    if (is_reference(id)) {
+      if (!told.is_calibrated) {
+        complain("calibrates-first", fmt::format("reference {}", static_cast<int>(id)));
+      }
+      if (std::exchange(told.is_unverified, false)) {
+        complain("program-status", "it was not read");
+      }
+      told.is_enabled = true;
+    }
+    if (is_calibration(id)) {
+      if (told.is_calibrated && told.is_enabled) {
+        complain("calibrates-disabled", fmt::format("identifier {}", static_cast<int>(id)));
+      }
+      told.is_calibrated = true;
+    }
+    if (id == kDisable || id == kCalibrationUnknown) told.is_enabled = false;
+    if (id == kCalibrationUnknown) told.is_calibrated = false;
+    if (is_programming(id)) judge_pause(told, id);
+  }
+
+  void judge_pause(Told& told, CommandId id) {
+    if (told.programmed && now_ - *told.programmed + noise_ < kProgramPause) {
+      complain("program-pause", fmt::format("{:.1f} ms", milliseconds(now_ - *told.programmed)));
+    }
+    told.programmed = now_;
+    told.is_unverified = id != kDefaultControllers;
+  }
+
+  void judge_read(Told& told, Bytes data) {
+    if (told.selected == kReadProgrammingStatus) told.is_unverified = false;
+    const auto most = most_bytes(told.selected);
+    if (data.size() > most) {
+      complain("read-size", fmt::format("{} bytes of {}", data.size(), most));
+    }
+  }
+
+  static std::size_t most_bytes(CommandId selected) noexcept {
+    switch (find_reading(selected)->kind) {
+      case ReadKind::kFloat:
+        return sizeof(float);
+      case ReadKind::kByte:
+        return 1;
+      case ReadKind::kControllerSet:
+        break;
+    }
+    return kLargestSetSize;
+  }
+
+  void judge_pen(Bytes data) {
+    const pen::CommandId id{std::to_integer<std::uint8_t>(data[0])};
+    const bool has_position = id == pen::CommandId::kSetPosition;
+    if (!has_position && id != pen::CommandId::kDeploy && id != pen::CommandId::kRetract) {
+      complain("pen-commands", to_hex_dump(data.first(1)));
+    }
+    if (data.size() > (has_position ? 2U : 1U)) complain("pen-surplus", to_hex_dump(data));
+    if (pen_ && now_ - *pen_ + noise_ < kPenPause) {
+      complain("pen-pause", fmt::format("{:.1f} ms", milliseconds(now_ - *pen_)));
+    }
+    pen_ = now_;
+  }
+
+  static double milliseconds(Duration time) {
+    return std::chrono::duration<double, std::milli>{time}.count();
+  }
+
+  static constexpr std::string_view kPrefix = "morap.host.";
+
+  Duration noise_;
+  Instant now_{};
+  std::size_t messages_ = 0;
+  std::map<std::uint8_t, Told> nodes_;  ///< by address
+  std::optional<Instant> pen_{};        ///< when it was last told something
+};
+
+}  // namespace
+
+std::unique_ptr<ProgramChecker> make_host_checker(const LinkNoise& noise) {
+  return std::make_unique<HostChecker>(noise);
+}
+
+}  // namespace armjig::morap
