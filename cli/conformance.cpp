@@ -5,6 +5,7 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -124,6 +125,18 @@ std::string command_of(const Options& options) {
   return text;
 }
 
+/// In one line what was not run, and why; nothing if everything was.
+void print_skipped(const Report& result) {
+  std::map<std::string, int> reasons;
+  for (const auto& row : result.rows) {
+    if (row.verdict == Verdict::kSkipped) ++reasons[row.actual];
+  }
+  if (reasons.empty()) return;
+  std::string text;
+  for (const auto& [reason, count] : reasons) text += fmt::format("; {} {}", count, reason);
+  fmt::print("skipped: {}\n", text.substr(2));
+}
+
 Exit run(const Suite& suite, Options options) {
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
@@ -144,6 +157,7 @@ Exit run(const Suite& suite, Options options) {
   result.started = started;
   if (how->impairment) result.facts.emplace_back("impairment", to_string(*how->impairment));
   fmt::print("{}\n", counts_line(result));
+  print_skipped(result);
   if (const auto written = write_files(result, options.files); !written) {
     return report(written.error());
   }
@@ -164,7 +178,9 @@ Exit conformance(Options options) {
   if (!options.explain.empty()) return explain(*suite, options.explain);
   if (options.list) return list_requirements(*suite, options);
   if (select(*suite, options.run.profile, options.run.selection).empty()) {
-    (void)report({ErrorCode::kBadValue, "--filter " + options.run.selection.filter,
+    const auto& filter = options.run.selection.filter;
+    (void)report({ErrorCode::kBadValue,
+                  filter.empty() ? "--shard " + options.shard : "--filter " + filter,
                   "no case is selected; --list shows the requirements"});
     return Exit::kNothing;
   }

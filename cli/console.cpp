@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/device_console.hpp"
+#include "cli/kinovazed_console.hpp"
 #include "cli/line_editor.hpp"
 #include "cli/pace.hpp"
 #include "cli/parol6_console.hpp"
@@ -34,11 +36,12 @@ constexpr auto kHelp =
     "  armjig console parol6 --target emulated:                 try it: 'help' lists the commands\n"
     "  armjig console parol6 --target pty:/tmp/parol6 --allow state,move\n"
     "  echo 'home' | armjig console parol6 --target emulated:   in virtual time, at once\n"
+    "  armjig console kinovazed --target tcp:127.0.0.1:51717 --allow state,move,home\n"
     "\n"
     "On a terminal: Tab completes, Up brings back earlier lines, Ctrl-C stops the arm, Ctrl-D\n"
     "leaves. From a pipe: one command a line, each to its end before the next, # begins a "
     "comment.\n"
-    "In both, a frame leaves every 10 ms, and the arm stands at the end.\n"
+    "In both, the arm stands at the end.\n"
     "\n"
     "Exit codes from a pipe: 0 all had effect, 1 some had none or were refused, 2 some cannot be\n"
     "read, 3 the target is silent or gone, 4 there was no command.";
@@ -51,7 +54,7 @@ struct Options {
 constexpr Duration kPeriod = 10ms;
 
 /// Brings the arm to a stand, at most for two seconds.
-Outcome<void> leave(Parol6Console& console) {
+Outcome<void> leave(DeviceConsole& console) {
   console.stop();
   const auto deadline = console.now() + 2s;
   while (console.is_busy() && console.now() < deadline) {
@@ -60,18 +63,17 @@ Outcome<void> leave(Parol6Console& console) {
   return {};
 }
 
-/// Waits for a sign of life. False: none came within a second.
-Outcome<bool> hears_the_board(Parol6Console& console) {
-  const auto deadline = console.now() + 1s;
-  while (!console.hears_the_board() && console.now() < deadline) {
+/// Waits for a sign of life. False: none came in time.
+Outcome<bool> hears_the_device(DeviceConsole& console) {
+  const auto deadline = console.now() + console.hears_within();
+  while (!console.hears_the_device() && console.now() < deadline) {
     if (const auto cycled = console.cycle(); !cycled) return tl::unexpected{cycled.error()};
   }
-  return console.hears_the_board();
+  return console.hears_the_device();
 }
 
-Problem silence(const Options& options) {
-  return {ErrorCode::kTimedOut, options.target.target,
-          fmt::format("no telemetry came: is a {} there, and switched on?", options.device)};
+Problem silence(const Options& options, const DeviceConsole& console) {
+  return {ErrorCode::kTimedOut, options.target.target, std::string{console.silence()}};
 }
 
 /// Lines of standard input, without waiting for them if other things have to go on.
@@ -105,35 +107,36 @@ class InputLines {
 /// Commands from a pipe, each to its end.
 class PipeSession {
  public:
-  PipeSession(Rig rig, const Options& options, InputLines::Patience patience)
-      : options_{options},
-        patience_{patience},
-        console_{std::move(rig), options.target.target,
-                 [this](Tone tone, std::string_view text) { say(tone, text); }} {}
+  PipeSession(const Options& options, InputLines::Patience patience)
+      : options_{options}, patience_{patience} {}
 
-  Exit run() {
-    const auto is_there = hears_the_board(console_);
+  Exit run(const ConsoleEntry& entry, const RigOptions& how) {
+    auto opened = entry.open(how, options_.target.target,
+                             [this](Tone tone, std::string_view text) { say(tone, text); });
+    if (!opened) return report(opened.error());
+    console_ = *std::move(opened);
+    const auto is_there = hears_the_device(*console_);
     if (!is_there) return report(is_there.error());
-    if (!*is_there) return report(silence(options_));
+    if (!*is_there) return report(silence(options_, *console_));
     if (const auto done = run_commands(); !done) return report(done.error());
     line_ = 0;
-    if (const auto left = leave(console_); !left) return report(left.error());
+    if (const auto left = leave(*console_); !left) return report(left.error());
     if (is_interrupted_) return Exit::kInterrupted;
     return has_run_ ? exit_ : Exit::kNothing;
   }
 
  private:
   Outcome<void> run_commands() {
-    while (!console_.wants_to_quit() && !is_interrupted()) {
+    while (!console_->wants_to_quit() && !is_interrupted()) {
       const auto line = input_.next(patience_);
       if (line) {
         ++line_;
-        console_.begin(*line);
+        console_->begin(*line);
         has_run_ = has_run_ || !is_blank(*line);
         if (auto done = finish(); !done) return done;
       } else if (input_.has_ended()) {
         return {};
-      } else if (auto cycled = console_.cycle(); !cycled) {
+      } else if (auto cycled = console_->cycle(); !cycled) {
         return cycled;
       }
     }
@@ -141,8 +144,8 @@ class PipeSession {
   }
 
   Outcome<void> finish() {
-    while (console_.is_busy() && !is_interrupted()) {
-      if (auto cycled = console_.cycle(); !cycled) return cycled;
+    while (console_->is_busy() && !is_interrupted()) {
+      if (auto cycled = console_->cycle(); !cycled) return cycled;
     }
     return {};
   }
@@ -185,7 +188,7 @@ class PipeSession {
   InputLines::Patience patience_;
   Signals signals_;
   InputLines input_;
-  Parol6Console console_;
+  std::unique_ptr<DeviceConsole> console_;
   int line_ = 0;  ///< of the input; 0: none
   bool has_run_ = false;
   bool is_interrupted_ = false;
@@ -195,22 +198,24 @@ class PipeSession {
 /// A person at a terminal.
 class TerminalSession {
  public:
-  TerminalSession(Rig rig, const Options& options, Pace::By by)
-      : options_{options},
-        console_{std::move(rig), options.target.target,
-                 [this](Tone tone, std::string_view text) { say(tone, text); }},
-        pace_{by, console_.now()} {}
+  explicit TerminalSession(const Options& options) : options_{options} {}
 
-  Exit run(const RigOptions& how) {
+  Exit run(const ConsoleEntry& entry, const RigOptions& how) {
+    auto opened = entry.open(how, options_.target.target,
+                             [this](Tone tone, std::string_view text) { say(tone, text); });
+    if (!opened) return report(opened.error());
+    console_ = *std::move(opened);
+    pace_.emplace(how.target.is_emulated() ? Pace::By::kWallClock : Pace::By::kPort,
+                  console_->now());
     greet(how);
-    while (!console_.wants_to_quit() && !problem_) {
+    while (!console_->wants_to_quit() && !problem_) {
       const auto line = editor_.read_line([this] { return meanwhile(); });
       if (!line) break;
-      console_.begin(*line);
+      console_->begin(*line);
     }
     is_leaving_ = true;
     if (!problem_) {
-      if (const auto left = leave(console_); !left) problem_ = left.error();
+      if (const auto left = leave(*console_); !left) problem_ = left.error();
     }
     return problem_ ? report(*problem_) : Exit::kPassed;
   }
@@ -224,26 +229,26 @@ class TerminalSession {
       fmt::print(
           "Nothing but looking is allowed: --allow state,move,home,grip lets you do more.\n");
     }
-    const auto is_there = hears_the_board(console_);
+    const auto is_there = hears_the_device(*console_);
     if (!is_there) problem_ = is_there.error();
-    if (is_there && !*is_there) fmt::print("No telemetry: is the board switched on?\n");
+    if (is_there && !*is_there) fmt::print("{}\n", console_->silence());
   }
 
   /// A period of the drive between keys.
   LineEditor::Wish meanwhile() {
-    if (signals_.must_end() || console_.wants_to_quit()) return LineEditor::Wish::kEnd;
+    if (signals_.must_end() || console_->wants_to_quit()) return LineEditor::Wish::kEnd;
     if (signals_.take_interrupt()) {
-      console_.stop();
+      console_->stop();
       return LineEditor::Wish::kDropLine;
     }
-    if (const auto wait = pace_.until(console_.now() + kPeriod); wait > 0ns) {
+    if (const auto wait = pace_->until(console_->now() + kPeriod); wait > 0ns) {
       std::this_thread::sleep_for(wait);
     }
-    if (const auto cycled = console_.cycle(); !cycled) {
+    if (const auto cycled = console_->cycle(); !cycled) {
       problem_ = cycled.error();
       return LineEditor::Wish::kEnd;
     }
-    const auto occupation = console_.occupation();
+    const auto occupation = console_->occupation();
     editor_.set_prompt(options_.device + (occupation.empty() ? "" : " [" + occupation + "]") +
                        "> ");
     return LineEditor::Wish::kGoOn;
@@ -257,26 +262,36 @@ class TerminalSession {
 
   const Options& options_;
   Signals signals_;
-  LineEditor editor_{Parol6Console::candidates, history_file()};
-  Parol6Console console_;
-  Pace pace_;
+  std::unique_ptr<DeviceConsole> console_;
+  LineEditor editor_{[this](std::string_view line) { return console_->candidates(line); },
+                     history_file()};
+  std::optional<Pace> pace_;
   std::optional<Problem> problem_;
   bool is_leaving_ = false;
 };
 
+constexpr std::array kConsoles{
+    ConsoleEntry{"kinovazed", open_kinova_console},
+    ConsoleEntry{"parol6", open_parol6_console},
+};
+
+std::vector<std::string> device_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : kConsoles) names.emplace_back(entry.device);
+  return names;
+}
+
 Exit console(const Options& options) {
   const auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
-  auto rig = open_rig(options.device, *how);
-  if (!rig) return report(rig.error());
-  const bool is_virtual = how->target.is_emulated();
+  const auto& entry = *std::ranges::find(kConsoles, options.device, &ConsoleEntry::device);
   if (::isatty(STDIN_FILENO) == 1 && has_screen()) {
-    const auto by = is_virtual ? Pace::By::kWallClock : Pace::By::kPort;
-    return TerminalSession{*std::move(rig), options, by}.run(*how);
+    return TerminalSession{options}.run(entry, *how);
   }
   // In virtual time nothing passes while nobody says anything.
-  const auto patience = is_virtual ? InputLines::Patience::kWait : InputLines::Patience::kNoWait;
-  return PipeSession{*std::move(rig), options, patience}.run();
+  const auto patience =
+      how->target.is_emulated() ? InputLines::Patience::kWait : InputLines::Patience::kNoWait;
+  return PipeSession{options, patience}.run(entry, *how);
 }
 
 }  // namespace
@@ -286,7 +301,7 @@ void add_console(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   command->add_option("DEVICE", options->device, "what is there")
       ->required()
-      ->check(CLI::IsMember({"parol6"}));
+      ->check(CLI::IsMember(device_names()));
   add_target_options(*command, options->target);
   command->callback([options, &action] { action = [options] { return console(*options); }; });
 }

@@ -13,9 +13,10 @@
 namespace armjig::cli {
 namespace {
 
-constexpr std::array<AddCommand, 13> kCommands{
-    add_conformance, add_console, add_decode, add_devices, add_doctor, add_emulate,   add_kin,
-    add_plan,        add_run,     add_script, add_trace,   add_watch,  add_completion};
+constexpr std::array kCommands{add_conformance, add_console, add_decode, add_devices,
+                               add_doctor,      add_emulate, add_i2c,    add_kin,
+                               add_lab,         add_morap,   add_plan,   add_run,
+                               add_script,      add_trace,   add_watch,  add_completion};
 
 constexpr auto kDescription =
     "Test jig for robot-arm controllers and the programs that drive them.\n"

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "harness/motion/parol6/cartesian_jog.hpp"
+#include "harness/motion/parol6/conversion.hpp"
 #include "harness/wire/parol6/joints.hpp"
 
 namespace armjig::cli {
@@ -46,9 +48,6 @@ Parsed<std::size_t> parse_joint(std::string_view text) {
   const bool is_joint = text.size() == 2 && (text[0] == 'j' || text[0] == 'J') && text[1] >= '1' &&
                         text[1] < static_cast<char>('1' + kJointCount);
   if (is_joint) return static_cast<std::size_t>(text[1] - '1');
-  for (const std::string_view axis : {"x", "y", "z", "rx", "ry", "rz"}) {
-    if (text == axis) return tl::unexpected<std::string>{"Cartesian jog is not there yet"};
-  }
   return tl::unexpected{fmt::format("'{}' is no joint: they are j1 to j6", text)};
 }
 
@@ -71,6 +70,30 @@ Parsed<StepsPerSecond> parse_speed(std::size_t joint, std::string_view text) {
   const auto speed = StepsPerSecond{static_cast<std::int32_t>(std::lround(steps))};
   if (speed.value == 0) return tl::unexpected{fmt::format("'{}' is no motion", text)};
   return speed;
+}
+
+Parsed<arm::Twist> parse_tool_speed(std::string_view axis, std::string_view text) {
+  const bool turns = axis.starts_with('r');
+  const auto letter = axis.substr(turns ? 1 : 0);
+  if (letter.size() != 1 || letter[0] < 'x' || letter[0] > 'z') {
+    return tl::unexpected{fmt::format("'{}' is no axis: they are x y z rx ry rz", axis)};
+  }
+  const auto number = parse_number(text);
+  if (!number) return tl::unexpected{number.error()};
+  const auto& [value, unit] = *number;
+  const std::string_view name = turns ? "deg" : "mm";
+  if (!unit.empty() && unit != name && unit != fmt::format("{}/s", name)) {
+    return unknown_unit(text, turns ? "deg/s" : "mm/s");
+  }
+  const double most = turns ? parol6::kFastestToolTurn : 1000 * parol6::kFastestToolJog;
+  if (value == 0) return tl::unexpected{fmt::format("'{}' is no motion", text)};
+  if (std::abs(value) > most) {
+    return tl::unexpected{fmt::format("'{}' is too fast: at most {:g} {}/s", text, most, name)};
+  }
+  const double speed = turns ? parol6::to_radians(value) : value / 1000;
+  const arm::Vector3 along{letter == "x" ? speed : 0, letter == "y" ? speed : 0,
+                           letter == "z" ? speed : 0};
+  return turns ? arm::Twist{{}, along} : arm::Twist{along, {}};
 }
 
 Parsed<Steps> parse_position(std::size_t joint, std::string_view text) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/parol6_view.hpp"
+#include "harness/drive/parol6/tool_jog.hpp"
 #include "harness/rig/parol6_judge.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
@@ -19,18 +20,6 @@ using namespace parol6;
 
 /// Even idle frames: the target is not ours any more.
 constexpr int kMostRefusals = 3;
-
-std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
-  std::vector<std::string_view> words;
-  while (!text.empty()) {
-    const auto end = text.find_first_of(separators);
-    if (end != 0) words.push_back(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  }
-  return words;
-}
-
-auto wrong(std::string text) { return tl::unexpected{std::move(text)}; }
 
 /// A way in big steps would be fast: half of what a joint may do at all, halved again for the time
 /// in which telemetry lags behind, and never more than its jog.
@@ -76,7 +65,6 @@ std::span<const Parol6Console::Row> Parol6Console::rows() noexcept {
   using Self = Parol6Console;
   constexpr auto kAlways = When::kAlways;
   constexpr auto kAlone = When::kAlone;
-  static constexpr std::string_view kJointWords = "j1 j2 j3 j4 j5 j6";
   static constexpr std::array kRows{
       Row{"help", "[COMMAND]", "what there is", kAlways, &Self::help, ""},
       Row{"status", "", "everything that telemetry says", kAlways, &Self::status, ""},
@@ -85,9 +73,11 @@ std::span<const Parol6Console::Row> Parol6Console::rows() noexcept {
       Row{"disable", "", "let the board ignore all motion", kAlways, &Self::disable, ""},
       Row{"clear", "", "clear error: ends a homing, enables nothing", kAlone, &Self::clear, ""},
       Row{"home", "", "find the zero of every joint; takes half a minute", kAlone, &Self::home, ""},
-      Row{"jog", "jN SPEED [SECONDS]",
-          "run a joint until 'stop'; SPEED in steps/s, or 10deg for deg/s", kAlone, &Self::jog,
-          kJointWords},
+      Row{"jog", "jN | world AXIS | tool AXIS  SPEED [SECONDS]",
+          "run a joint until 'stop', SPEED in steps/s or 10deg for deg/s; or the tool along x y z "
+          "or "
+          "about rx ry rz, SPEED in mm/s or deg/s",
+          kAlone, &Self::jog, "j1 j2 j3 j4 j5 j6 world tool|x y z rx ry rz"},
       Row{"stop", "", "make the arm stand, whatever it does", kAlways, &Self::stop_arm, ""},
       Row{"goto", "jN=PLACE ...", "move joints together; PLACE in steps, or 90deg", kAlone,
           &Self::go_to, "j1= j2= j3= j4= j5= j6="},
@@ -101,11 +91,6 @@ std::span<const Parol6Console::Row> Parol6Console::rows() noexcept {
       Row{"quit", "", "make the arm stand and leave; so does exit", kAlways, &Self::quit, ""},
   };
   return kRows;
-}
-
-const Parol6Console::Row* Parol6Console::find_row(std::string_view name) noexcept {
-  const auto row = std::ranges::find(rows(), name == "exit" ? "quit" : name, &Row::name);
-  return row == rows().end() ? nullptr : &*row;
 }
 
 Parol6Console::Parol6Console(Rig rig, std::string target, Say say)
@@ -133,22 +118,8 @@ Outcome<void> Parol6Console::cycle() {
 }
 
 void Parol6Console::begin(std::string_view line) {
-  const auto words = split(line.substr(0, line.find('#')), " \t\r");
-  if (words.empty()) return;
-  const auto* const row = find_row(words.front());
-  if (row == nullptr) {
-    say_(Tone::kUnreadable,
-         fmt::format("there is no command '{}'; 'help' lists them", words.front()));
-    return;
-  }
-  if (row->when == When::kAlone && is_busy()) {
-    say_(Tone::kFailed, fmt::format("{} is still going on; 'stop' ends it", name_));
-    return;
-  }
-  const auto read = (this->*row->run)(Words{words}.subspan(1));
-  if (read) return;
-  const auto reason = read.error().empty() ? "" : read.error() + "; ";
-  say_(Tone::kUnreadable, fmt::format("{}usage: {}", reason, call_of(*row)));
+  run_command(*this, rows(), line, is_busy() ? name_ : "",
+              [this](Tone tone, std::string_view text) { say_(tone, text); });
 }
 
 void Parol6Console::stop() {
@@ -163,23 +134,6 @@ std::string Parol6Console::occupation() {
   if (!is_busy()) return {};
   const auto seconds = std::chrono::floor<std::chrono::seconds>(now() - began_).count();
   return seconds == 0 ? name_ : fmt::format("{} {} s", name_, seconds);
-}
-
-std::vector<std::string> Parol6Console::candidates(std::string_view line) {
-  const bool is_new_word = line.empty() || line.ends_with(' ');
-  const auto words = split(line, " \t");
-  const auto place = words.size() - (is_new_word ? 0 : 1);
-  std::vector<std::string> found;
-  if (place == 0 || (place == 1 && words.front() == "help")) {
-    for (const auto& row : rows()) found.emplace_back(row.name);
-    return found;
-  }
-  const auto* const row = find_row(words.front());
-  if (row == nullptr) return found;
-  const auto places = split(row->completions, "|");
-  if (place > places.size()) return found;
-  for (const auto word : split(places[place - 1], " ")) found.emplace_back(word);
-  return found;
 }
 
 // What goes on.
@@ -258,30 +212,16 @@ bool Parol6Console::may_go_to(const JointSteps& goal) {
 
 // The commands.
 
-std::string Parol6Console::call_of(const Row& row) {
-  return row.arguments.empty() ? std::string{row.name}
-                               : fmt::format("{} {}", row.name, row.arguments);
-}
-
-Parol6Console::Read Parol6Console::help(Words words) {
-  constexpr std::size_t kColumn = 26;
+Read Parol6Console::help(Words words) {
   if (words.size() > 1) return wrong("");
-  std::string text;
-  for (const auto& row : rows()) {
-    if (!words.empty() && row.name != words.front()) continue;
-    const auto call = call_of(row);
-    const auto* const gap = call.size() < kColumn ? "" : "\n";
-    text += fmt::format("{}{}{}{:>{}}{}", text.empty() ? "" : "\n", call, gap, "",
-                        kColumn - (call.size() < kColumn ? call.size() : 0), row.help);
-  }
-  const bool asks_for_cartesian = !words.empty() && words.front() == "cartesian";
-  if (asks_for_cartesian) text = "Cartesian jog comes with motion planning; for now, jog joints";
-  if (text.empty()) return wrong(fmt::format("there is no command '{}'", words.front()));
+  const auto name = words.empty() ? std::string_view{} : words.front();
+  const auto text = help_text(rows(), name);
+  if (text.empty()) return wrong(fmt::format("there is no command '{}'", name));
   say_(Tone::kAnswer, text);
   return {};
 }
 
-Parol6Console::Read Parol6Console::status(Words words) {
+Read Parol6Console::status(Words words) {
   if (!words.empty()) return wrong("");
   if (!drive_.telemetry()) {
     say_(Tone::kFailed, "no telemetry yet");
@@ -294,32 +234,34 @@ Parol6Console::Read Parol6Console::status(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::enable(Words words) {
+Read Parol6Console::enable(Words words) {
   if (!words.empty()) return wrong("");
   go_on_if("enable", begin_command(drive_, Command::kEnable));
   return {};
 }
 
-Parol6Console::Read Parol6Console::disable(Words words) {
+Read Parol6Console::disable(Words words) {
   if (!words.empty()) return wrong("");
   if (is_busy()) say_(Tone::kEvent, name_ + " is ended");
   go_on_if("disable", begin_command(drive_, Command::kDisable));
   return {};
 }
 
-Parol6Console::Read Parol6Console::clear(Words words) {
+Read Parol6Console::clear(Words words) {
   if (!words.empty()) return wrong("");
   go_on_if("clear", begin_command(drive_, Command::kClearError));
   return {};
 }
 
-Parol6Console::Read Parol6Console::home(Words words) {
+Read Parol6Console::home(Words words) {
   if (!words.empty()) return wrong("");
   go_on_if("home", begin_home(drive_));
   return {};
 }
 
-Parol6Console::Read Parol6Console::jog(Words words) {
+Read Parol6Console::jog(Words words) {
+  if (!words.empty() && words[0] == "world") return jog_tool(JogFrame::kWorld, words.subspan(1));
+  if (!words.empty() && words[0] == "tool") return jog_tool(JogFrame::kTool, words.subspan(1));
   if (words.size() != 2 && words.size() != 3) return wrong("");
   const auto joint = parse_joint(words[0]);
   if (!joint) return wrong(joint.error());
@@ -335,13 +277,27 @@ Parol6Console::Read Parol6Console::jog(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::stop_arm(Words words) {
+Read Parol6Console::jog_tool(JogFrame frame, Words words) {
+  if (words.size() != 2 && words.size() != 3) return wrong("");
+  const auto velocity = parse_tool_speed(words[0], words[1]);
+  if (!velocity) return wrong(velocity.error());
+  std::optional<Duration> time;
+  if (words.size() == 3) {
+    const auto seconds = parse_seconds(words[2]);
+    if (!seconds) return wrong(seconds.error());
+    time = *seconds;
+  }
+  go_on_if("jog", begin_tool_jog(drive_, {frame, *velocity}, time));
+  return {};
+}
+
+Read Parol6Console::stop_arm(Words words) {
   if (!words.empty()) return wrong("");
   stop();
   return {};
 }
 
-Parol6Console::Read Parol6Console::go_to(Words words) {
+Read Parol6Console::go_to(Words words) {
   if (words.empty()) return wrong("");
   if (!drive_.telemetry()) {
     say_(Tone::kFailed, "refused: without telemetry nobody knows where the arm is");
@@ -361,7 +317,7 @@ Parol6Console::Read Parol6Console::go_to(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::out(Words words) {
+Read Parol6Console::out(Words words) {
   if (words.size() != 2) return wrong("");
   const bool is_known =
       (words[0] == "1" || words[0] == "2") && (words[1] == "on" || words[1] == "off");
@@ -373,7 +329,7 @@ Parol6Console::Read Parol6Console::out(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::gripper(Words words) {
+Read Parol6Console::gripper(Words words) {
   if (!words.empty() && words.front() == "move") return gripper_move(words.subspan(1));
   const bool calibrates = words.size() == 1 && words.front() == "calibrate";
   if (!calibrates && (words.size() != 1 || words.front() != "clear")) return wrong("");
@@ -382,7 +338,7 @@ Parol6Console::Read Parol6Console::gripper(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::gripper_move(Words words) {
+Read Parol6Console::gripper_move(Words words) {
   if (words.size() != 3) return wrong("");
   const auto position = parse_whole("position", words[0], 0, 255);
   if (!position) return wrong(position.error());
@@ -399,7 +355,7 @@ Parol6Console::Read Parol6Console::gripper_move(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::estop(Words words) {
+Read Parol6Console::estop(Words words) {
   if (!words.empty()) return wrong("");
   const auto& frame = drive_.telemetry();
   if (!frame) {
@@ -411,7 +367,7 @@ Parol6Console::Read Parol6Console::estop(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::stats(Words words) {
+Read Parol6Console::stats(Words words) {
   if (!words.empty()) return wrong("");
   auto text = link_panel(drive_.statistics()) +
               fmt::format("schedule   {} skipped, late by {} at 50 %, 99 % and most",
@@ -423,7 +379,7 @@ Parol6Console::Read Parol6Console::stats(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::wait(Words words) {
+Read Parol6Console::wait(Words words) {
   if (words.size() != 1) return wrong("");
   const auto time = parse_seconds(words[0]);
   if (!time) return wrong(time.error());
@@ -431,10 +387,17 @@ Parol6Console::Read Parol6Console::wait(Words words) {
   return {};
 }
 
-Parol6Console::Read Parol6Console::quit(Words words) {
+Read Parol6Console::quit(Words words) {
   if (!words.empty()) return wrong("");
   wants_to_quit_ = true;
   return {};
+}
+
+Outcome<std::unique_ptr<DeviceConsole>> open_parol6_console(const RigOptions& how,
+                                                            const std::string& target, Say say) {
+  auto rig = open_rig("parol6", how);
+  if (!rig) return tl::unexpected{rig.error()};
+  return std::make_unique<Parol6Console>(*std::move(rig), target, std::move(say));
 }
 
 }  // namespace armjig::cli

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,79 +10,47 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/command_table.hpp"
+#include "cli/device_console.hpp"
 #include "cli/parol6_arguments.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
 #include "harness/drive/parol6/activity.hpp"
 #include "harness/drive/parol6/drive.hpp"
 #include "harness/drive/parol6/drive_loop.hpp"
+#include "harness/motion/parol6/cartesian_jog.hpp"
 #include "harness/rig/rig.hpp"
 
 namespace armjig::cli {
 
-/// What a line that the console says is.
-enum class Tone : std::uint8_t {
-  kAnswer,
-  kEvent,       ///< something happened by itself, or goes on
-  kFailed,      ///< what was asked for was refused or had no effect
-  kUnreadable,  ///< what was asked for cannot be understood
-};
-
-/// The commands of `armjig console parol6`. A command is begun, and goes on while `cycle` is called
-/// once a period; whoever calls decides whether to wait for its end.
-class Parol6Console {
+/// The commands of `armjig console parol6`.
+class Parol6Console final : public DeviceConsole {
  public:
-  /// Gets text without the last line end, of one line or several.
-  using Say = std::function<void(Tone, std::string_view)>;
-
   /// `target` is for messages.
   Parol6Console(Rig rig, std::string target, Say say);
-  Parol6Console(const Parol6Console&) = delete;
-  Parol6Console& operator=(const Parol6Console&) = delete;
-  ~Parol6Console() = default;
 
-  /// Runs the drive for a period. Problems: the target is gone or may not be written to any more.
-  [[nodiscard]] Outcome<void> cycle();
-
-  /// Begins a command; what is blank or a comment does nothing.
-  void begin(std::string_view line);
-  /// The command that was begun last has not ended.
-  [[nodiscard]] bool is_busy() const noexcept { return activity_ != nullptr; }
-  [[nodiscard]] bool wants_to_quit() const noexcept { return wants_to_quit_; }
-
+  [[nodiscard]] Outcome<void> cycle() override;
+  void begin(std::string_view line) override;
+  [[nodiscard]] bool is_busy() const noexcept override { return activity_ != nullptr; }
+  [[nodiscard]] bool wants_to_quit() const noexcept override { return wants_to_quit_; }
   /// Does what the command `stop` does.
-  void stop();
-
-  /// What goes on, in a word or two for a prompt: `home 12 s`, `ESTOP`; empty if nothing does.
-  [[nodiscard]] std::string occupation();
-
-  /// What may stand at the end of the line, for completion.
-  [[nodiscard]] static std::vector<std::string> candidates(std::string_view line);
-
-  [[nodiscard]] Instant now() { return rig_.port().now(); }
-  [[nodiscard]] bool hears_the_board() const noexcept { return drive_.telemetry().has_value(); }
+  void stop() override;
+  [[nodiscard]] std::string occupation() override;
+  [[nodiscard]] std::vector<std::string> candidates(std::string_view line) const override {
+    return candidates_in(rows(), line);
+  }
+  [[nodiscard]] Instant now() override { return rig_.port().now(); }
+  [[nodiscard]] bool hears_the_device() const noexcept override {
+    return drive_.telemetry().has_value();
+  }
+  [[nodiscard]] Duration hears_within() const noexcept override { return std::chrono::seconds{1}; }
+  [[nodiscard]] std::string_view silence() const noexcept override {
+    return "no telemetry came: is a parol6 there, and switched on?";
+  }
 
  private:
-  using Words = std::span<const std::string_view>;
-  /// Wrong arguments are told in a sentence; any other trouble is said by `say_`.
-  using Read = Parsed<void>;
-
-  /// When a command may be given.
-  enum class When : std::uint8_t {
-    kAlways,
-    kAlone,  ///< not while another one goes on
-  };
-  struct Row {
-    std::string_view name;
-    std::string_view arguments;
-    std::string_view help;
-    When when{};
-    Read (Parol6Console::*run)(Words words);
-    std::string_view completions;  ///< words for one place, `|`, words for the next
-  };
+  using Row = CommandRow<Parol6Console>;
   [[nodiscard]] static std::span<const Row> rows() noexcept;
-  [[nodiscard]] static const Row* find_row(std::string_view name) noexcept;
-  [[nodiscard]] static std::string call_of(const Row& row);
 
   Read help(Words words);
   Read status(Words words);
@@ -91,6 +59,7 @@ class Parol6Console {
   Read clear(Words words);
   Read home(Words words);
   Read jog(Words words);
+  Read jog_tool(parol6::JogFrame frame, Words words);
   Read stop_arm(Words words);
   Read go_to(Words words);
   Read out(Words words);
@@ -132,5 +101,10 @@ class Parol6Console {
   Extras wanted_;
   Extras accepted_;
 };
+
+/// Opens the target.
+[[nodiscard]] Outcome<std::unique_ptr<DeviceConsole>> open_parol6_console(const RigOptions& how,
+                                                                          const std::string& target,
+                                                                          Say say);
 
 }  // namespace armjig::cli

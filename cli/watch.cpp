@@ -32,11 +32,14 @@ constexpr auto kHelp =
     "\n"
     "  armjig watch parol6 --target pty:/tmp/parol6\n"
     "  armjig watch parol6 --target emulated: --seconds 10      in virtual time, at once\n"
+    "  armjig watch kinovazed --target tcp:127.0.0.1:51717\n"
     "  armjig watch parol6 --target pty:/tmp/parol6 --json | jq .joints[0].position_deg\n"
     "\n"
     "It only asks. But a PAROL6 answers nothing else than commands: watch sends idle frames, and\n"
     "every frame also says what outputs and gripper shall do. So outputs go off, a gripper goes\n"
-    "limp, and a homing that was interrupted goes on.\n"
+    "limp, and a homing that was interrupted goes on. A KinovaZED server speaks by itself: "
+    "nothing\n"
+    "is sent, but it serves one client at a time, and that is watch then.\n"
     "\n"
     "--reconnect goes on when the device comes back: after a reset, or on its cable again.\n"
     "\n"
@@ -98,17 +101,26 @@ class Watch {
       const auto cycle = schedule_.begin(port_.now());
       skipped_ += cycle.skipped;
       lateness_.record(cycle.lateness);
-      if (auto written = port_.write(watched_->request(port_.now())); !written) return written;
-      ++sent_;
+      if (auto asked = ask(); !asked) return asked;
       show();
     }
     return {};
   }
 
+  Result<void> ask() {
+    const auto request = watched_->request(port_.now());
+    if (request.empty()) return {};
+    ++sent_;
+    return port_.write(request);
+  }
+
+  /// Questions, or what came without any.
+  [[nodiscard]] std::uint64_t count() const { return sent_ > 0 ? sent_ : watched_->answers(); }
+
   [[nodiscard]] bool is_over() {
     if (signals_.must_end() || signals_.take_interrupt()) return true;
     if (screen_ && screen_->wants_to_quit()) return true;
-    if (options_.count && sent_ >= *options_.count) return true;
+    if (options_.count && count() >= *options_.count) return true;
     return options_.seconds &&
            schedule_.next() - start_ >= std::chrono::duration<double>{*options_.seconds};
   }
@@ -199,9 +211,9 @@ Exit watch(const Options& options) {
     return report({ErrorCode::kBadValue, options.target.target + " in virtual time never ends",
                    "say --seconds or --count"});
   }
-  auto rig = open_rig(options.device, *how);
-  if (!rig) return report(rig.error());
   const auto& entry = entry_of(options.device);
+  auto rig = entry.open(*how);
+  if (!rig) return report(rig.error());
   const auto period = std::chrono::round<Duration>(
       std::chrono::duration<double>{1.0 / options.rate.value_or(entry.rate)});
   const bool needs_pace = how->target.is_emulated() && is_watched_live;
@@ -216,9 +228,9 @@ Exit watch(const Options& options) {
         {result.error().code, options.target.target, "is it still there and switched on?"});
   }
   if (watch.has_heard_something()) return Exit::kPassed;
-  return report(
-      {ErrorCode::kTimedOut, options.target.target,
-       fmt::format("no telemetry came: is a {} there, and switched on?", options.device)});
+  return report({ErrorCode::kTimedOut, options.target.target,
+                 fmt::format("no telemetry came: is a {} there, switched on, and free for us?",
+                             options.device)});
 }
 
 std::vector<std::string> device_names() {

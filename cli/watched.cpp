@@ -4,15 +4,22 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <chrono>
+#include <optional>
 #include <utility>
 #include <variant>
 
+#include "cli/kinovazed_view.hpp"
 #include "cli/parol6_view.hpp"
+#include "cli/server_stream.hpp"
+#include "cli/target_options.hpp"
 #include "harness/capture/message_json.hpp"
 #include "harness/drive/parol6/drive.hpp"
 #include "harness/drive/parol6/telemetry_json.hpp"
 #include "harness/wire/demo/demo.hpp"
 #include "harness/wire/dissector.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
+#include "harness/wire/kinovazed/line_splitter.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 
 namespace armjig::cli {
@@ -115,14 +122,75 @@ class WatchedBoard final : public Watched {
   std::vector<std::pair<Instant, parol6::TelemetryFrame>> frames_;
 };
 
+/// Beats and events, which come by themselves.
+class WatchedServer final : public Watched {
+ public:
+  std::vector<std::byte> request(Instant /*now*/) override { return {}; }
+  void receive(Instant now, Bytes bytes) override {
+    messages_.clear();
+    dissector_->feed(Direction::kFromDevice, now, bytes, messages_);
+    while (!bytes.empty()) {
+      const auto step = splitter_.step(bytes);
+      bytes = bytes.subspan(step.used);
+      if (step.found == kinovazed::LineSplitter::Found::kLine) take_line(step.line);
+    }
+  }
+  void finish() override {}
+  [[nodiscard]] std::uint64_t answers() const override { return beats_; }
+  [[nodiscard]] std::vector<std::string> json_lines() const override {
+    std::vector<std::string> lines;
+    for (const auto& message : messages_) lines.push_back(to_json(message));
+    return lines;
+  }
+  [[nodiscard]] std::string line() const override {
+    return beat_ ? fmt::format("{}  ({})", state_of(*beat_), flags_of(*beat_)) : std::string{};
+  }
+  [[nodiscard]] std::string panel() const override {
+    if (!beat_) return {};
+    return fmt::format("state      {}\nbeat       {}\n", state_of(*beat_), flags_of(*beat_));
+  }
+  [[nodiscard]] std::string link() const override {
+    return fmt::format("link       {} beats, {} events, {} lines that are no message\n", beats_,
+                       events_, bad_);
+  }
+
+ private:
+  void take_line(std::string_view line) {
+    const auto message = kinovazed::decode_message(line);
+    if (!message) {
+      ++bad_;
+    } else if (const auto* const beat = std::get_if<kinovazed::Heartbeat>(&*message)) {
+      beat_ = *beat;
+      ++beats_;
+    } else {
+      ++events_;
+    }
+  }
+
+  std::unique_ptr<Dissector> dissector_ = kinovazed::make_dissector();
+  kinovazed::LineSplitter splitter_;
+  std::vector<Message> messages_;
+  std::optional<kinovazed::Heartbeat> beat_;
+  std::uint64_t beats_ = 0;
+  std::uint64_t events_ = 0;
+  std::uint64_t bad_ = 0;
+};
+
+std::unique_ptr<Watched> make_kinovazed(Duration /*period*/) {
+  return std::make_unique<WatchedServer>();
+}
+Outcome<Rig> open_demo(const RigOptions& options) { return open_rig("demo", options); }
+Outcome<Rig> open_parol6(const RigOptions& options) { return open_rig("parol6", options); }
+
 std::unique_ptr<Watched> make_demo(Duration /*period*/) { return std::make_unique<WatchedDemo>(); }
 std::unique_ptr<Watched> make_parol6(Duration period) {
   return std::make_unique<WatchedBoard>(period);
 }
 
 constexpr std::array kWatched{
-    WatchedEntry{"demo", 10, make_demo},
-    WatchedEntry{"parol6", 100, make_parol6},
+    WatchedEntry{"demo", 10, make_demo, open_demo},
+    WatchedEntry{"kinovazed", 10, make_kinovazed, open_kinova_stream},
+    WatchedEntry{"parol6", 100, make_parol6, open_parol6},
 };
 
 }  // namespace

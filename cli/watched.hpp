@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "harness/core/bytes.hpp"
+#include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
+#include "harness/rig/rig.hpp"
 
 namespace armjig::cli {
 
@@ -22,7 +24,7 @@ class Watched {
   Watched& operator=(const Watched&) = delete;
   virtual ~Watched() = default;
 
-  /// The harmless message that is due at `now`.
+  /// The harmless message that is due at `now`; empty if the device speaks by itself.
   [[nodiscard]] virtual std::vector<std::byte> request(Instant now) = 0;
 
   /// Takes what came.
@@ -48,8 +50,9 @@ class Watched {
 /// A device that this room knows.
 struct WatchedEntry {
   std::string_view device;
-  double rate;  ///< messages a second unless the user wants another one
+  double rate;  ///< questions, or looks, a second unless the user wants another one
   std::unique_ptr<Watched> (*make)(Duration period);
+  Outcome<Rig> (*open)(const RigOptions& options);
 };
 
 /// All of them, by name.

@@ -253,7 +253,7 @@ ReportSection rates_of(const MutationResult& result) {
     for (auto* count : {&counts[fate.mutant.section], &counts["all"]}) {
       ++count->all;
       count->equivalent += fate.mutant.equivalent.empty() ? 0 : 1;
-      count->killed += fate.killer.empty() ? 0 : 1;
+      count->killed += fate.killer.empty() || !fate.mutant.equivalent.empty() ? 0 : 1;
     }
   }
   ReportSection section{.title = "Kill rate by section"};

@@ -221,8 +221,9 @@ void BoardBench::bring_to(std::size_t start) {
   if (std::exchange(is_spoiled_, false) || start == kFresh) power_cycle();
   if (start == kFresh) return;  // its first answer is for the case
   if (!is_alive()) fail_by_silence("an answer", "silence");
-  if (start == kEnabled || start == kHomed) enable();
+  if (start == kHomed || start == kEnabled) enable();
   if (start == kHomed) home();
+  if (start == kEnabled) walk_back();
 }
 
 void BoardBench::spoil() {
@@ -261,7 +262,6 @@ void BoardBench::enable() {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     expect(answer, fmt::format("speed.j{}", j + 1), 0);
   }
-  walk_back();
 }
 
 /// Cases drive unhomed joints to and fro; what remains must not add up until a switch is hit.
@@ -269,8 +269,7 @@ void BoardBench::walk_back() {
   constexpr int kNear = 20;
   constexpr int kMost = 1500;  // what a guard lets pass for every joint
   auto answer = ask(idle());
-  if (is_homed(answer)) return;
-  if (!origin_) origin_ = answer.position;
+  if (!origin_) origin_ = is_homed(answer) ? kStandby : answer.position;
   const auto is_back = [&](const Answer& now) {
     return std::ranges::equal(now.position, *origin_, [](Steps a, Steps b) {
       return std::abs(a.value - b.value) <= kNear;
@@ -303,7 +302,7 @@ void BoardBench::home() {
         },
         kHomingTime);
     if (!finished) fail("all joints homed", "not within 90 s");
-    origin_.reset();
+    origin_ = kStandby;
     act(idle());
   }
   walk_to_standby();

@@ -18,8 +18,9 @@ namespace armjig::parol6 {
 enum Start : std::uint8_t {
   kListening,  ///< answers idle frames
   kFresh,      ///< just switched on
-  kEnabled,    ///< enabled, standing, speeds 0, outputs off; homed or not
-  kHomed,      ///< and homed, at its standby position
+  kHomed,      ///< homed, at its standby position, enabled
+  kEnabled,    ///< enabled, standing, speeds 0, outputs off; homed or not, but where it was homed
+               ///< if it may be: cases here begin to home, and must not meet a switch
 };
 
 /// Where homing leaves the counters.
@@ -130,7 +131,7 @@ class BoardBench final : public StreamBench {
 
   std::string about_;
   std::vector<Answer> homing_log_;
-  std::optional<std::array<Steps, kJointCount>> origin_;  ///< where cases begin, if not homed
+  std::optional<std::array<Steps, kJointCount>> origin_;  ///< where `kEnabled` cases begin
   Instant last_asked_{};
   Duration noise_{};
   bool is_spoiled_ = false;

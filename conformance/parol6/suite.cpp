@@ -15,8 +15,8 @@ namespace {
 constexpr std::array kStarts{
     StartState{"listening", Hazard::kObserve},
     StartState{"fresh from power-up", Hazard::kState},
-    StartState{"enabled", Hazard::kState},
     StartState{"homed", Hazard::kHome},
+    StartState{"enabled", Hazard::kState},
 };
 
 Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {

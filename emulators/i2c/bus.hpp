@@ -23,7 +23,9 @@ namespace armjig::i2c {
 /// - `stretch()`: for how long it holds the clock after the byte that it just had.
 class BusDevice {
  public:
-  template <EmulatedBusDevice Device>
+  // Copying is asked about before the concept is: the concept would ask for copying.
+  template <class Device>
+    requires(!std::same_as<Device, BusDevice>) && EmulatedBusDevice<Device>
   explicit BusDevice(Device device) : model_{std::make_unique<Model<Device>>(std::move(device))} {}
 
   BusDevice(const BusDevice& other) : model_{other.model_->clone()} {}

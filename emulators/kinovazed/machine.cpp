@@ -9,6 +9,8 @@ namespace {
 using Cell = std::optional<State>;
 using enum State;
 
+// As short as the table that they fill needs them.
+// NOLINTBEGIN(readability-identifier-naming)
 constexpr Cell r{};  // Rejected
 constexpr Cell off{kPoweredOff};
 constexpr Cell ini{kInitializing};
@@ -20,6 +22,7 @@ constexpr Cell mode{kSettingMode};
 constexpr Cell move{kSteering};
 constexpr Cell run{kRunningSequence};
 constexpr Cell frz{kFrozen};
+// NOLINTEND(readability-identifier-naming)
 
 /// kinovazed.state.table. Columns are the verbs, in their order: EStop, QuitEStop, Initialize,
 /// Unfold, Retract, Freeze, Unfreeze, SetJoystickMode, MoveJoystick, RunObjective.

@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 /// Reads the members of a file; remembers the first that is wrong.
 class FileReader {
  public:
-  Pose pose(const Json& object, std::string place) {
+  Pose pose(const Json& object, const std::string& place) {
     constexpr std::array<const char*, 6> kNames{"X", "Y", "Z", "pitch", "yaw", "roll"};
     std::array<float, 6> values{};
     if (!object.is_object()) {

@@ -169,7 +169,6 @@ class Worker {
 
   std::deque<Job> jobs_;
   std::optional<Job> job_;
-  bool is_event_open_ = false;  ///< reported, and its steps not done
   std::vector<Step> steps_;
   std::vector<Step> asked_;  ///< by `then_*`, in order
   std::optional<Step> step_;

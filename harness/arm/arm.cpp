@@ -2,6 +2,7 @@
 #include "harness/arm/arm.hpp"
 
 #include <cassert>
+#include <limits>
 #include <utility>
 
 namespace armjig::arm {
@@ -19,6 +20,14 @@ Pose moved(const Joint& joint, double by) noexcept {
 
 Arm with_tool(Arm arm, const Pose& tool) {
   arm.tool = arm.tool * tool;
+  return arm;
+}
+
+Arm without_limits(Arm arm) {
+  for (auto& joint : arm.joints) {
+    joint.lower = -std::numeric_limits<double>::infinity();
+    joint.upper = std::numeric_limits<double>::infinity();
+  }
   return arm;
 }
 

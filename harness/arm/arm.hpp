@@ -43,6 +43,9 @@ struct Arm {
 /// The same arm with a tool mounted on its present tool frame.
 [[nodiscard]] Arm with_tool(Arm arm, const Pose& tool);
 
+/// The same arm with joints that move without end.
+[[nodiscard]] Arm without_limits(Arm arm);
+
 /// A row of a Denavit-Hartenberg table in the classic form Rz(theta) Tz(d) Tx(a) Rx(alpha), where
 /// theta = sign * joint + offset.
 struct DhRow {

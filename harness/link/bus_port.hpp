@@ -20,17 +20,49 @@ struct BusAddress {
 
 enum class Ack : std::uint8_t { kAck, kNack };
 
-/// An I2C bus seen from its master, one bus operation a call, so that repeated starts, short reads
-/// and refused bytes can be said. Time as in `StreamPort`; on a virtual clock every operation takes
-/// as long as its bits do.
+enum class Access : std::uint8_t { kWrite, kRead };
+
+/// A part of a transaction: a start, the address, some bytes.
+struct BusMessage {
+  BusAddress address{};
+  Access access{};
+  Bytes write{};                ///< what to write
+  std::span<std::byte> read{};  ///< where to put what is read; as much as it is long
+};
+
+[[nodiscard]] constexpr BusMessage write_to(BusAddress address, Bytes bytes) noexcept {
+  return {address, Access::kWrite, bytes, {}};
+}
+[[nodiscard]] constexpr BusMessage read_from(BusAddress address,
+                                             std::span<std::byte> into) noexcept {
+  return {address, Access::kRead, {}, into};
+}
+
+/// What the devices made of a transaction. It ends at the first refusal.
+enum class Transfer : std::uint8_t { kDone, kAddressRefused, kByteRefused };
+
+/// An I2C bus seen from its master. Time as in `StreamPort`; on a virtual clock every operation
+/// takes as long as its bits do.
+///
+/// Every bus can do whole transactions. One that can also be led byte by byte lets repeated starts,
+/// short reads and refused bytes be said; behind an operating system or an adapter there is no such
+/// thing.
 class BusPort {
  public:
-  enum class Access : std::uint8_t { kWrite, kRead };
+  using Access = armjig::Access;
 
   BusPort() = default;
   BusPort(const BusPort&) = delete;
   BusPort& operator=(const BusPort&) = delete;
   virtual ~BusPort() = default;
+
+  /// Whether single operations can be done; if not, each of them fails with `kUnsupported`.
+  [[nodiscard]] virtual bool has_operations() const noexcept { return true; }
+
+  /// A transaction: its messages with repeated starts between, and a stop. Errors: `kBusy`
+  /// (arbitration lost, a line held down), `kTimedOut` (a device holds the clock), `kDisconnected`
+  /// (the adapter is gone), `kBadValue` (more or longer messages than the bus can do).
+  [[nodiscard]] virtual Result<Transfer> transfer(std::span<const BusMessage> messages);
 
   /// Start condition (a repeated one inside a transaction), then the address. `kNack`: nobody is
   /// there. Errors: `kBusy` (arbitration lost, a line held down), `kTimedOut`.

@@ -50,6 +50,7 @@ class ImpairedSession final : public SessionPort {
   void reset() override;
 
   [[nodiscard]] Instant now() const override { return inner_->now(); }
+  [[nodiscard]] std::optional<int> descriptor() const override { return inner_->descriptor(); }
 
   [[nodiscard]] ImpairmentStatistics statistics() const noexcept { return paths_.statistics(); }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <type_traits>
 #include <utility>
 
 #include "harness/core/emulation.hpp"
@@ -14,14 +15,16 @@ namespace armjig {
 template <EmulatedServer Device>
 class MemorySession final : public SessionPort {
  public:
-  explicit MemorySession(Device device) : device_{std::move(device)} {}
+  /// `start`: the device's time, if it is not new.
+  explicit MemorySession(Device device, Instant start = {})
+      : device_{std::move(device)}, now_{start} {}
 
   Result<void> connect(Instant /*deadline*/) override {
     if (is_open_) return fail(ErrorCode::kBusy);
+    device_.clear_sent();
+    if (!is_accepted()) return fail(ErrorCode::kRefused);
     is_open_ = true;
     arrived_.clear();
-    device_.clear_sent();
-    device_.connect(now_);
     return {};
   }
 
@@ -59,6 +62,16 @@ class MemorySession final : public SessionPort {
   [[nodiscard]] Device& device() noexcept { return device_; }
 
  private:
+  /// A device whose `connect` answers nothing always listens.
+  bool is_accepted() {
+    if constexpr (std::is_void_v<decltype(device_.connect(now_))>) {
+      device_.connect(now_);
+      return true;
+    } else {
+      return device_.connect(now_);
+    }
+  }
+
   void take_sent() {
     for (const auto& event : device_.sent()) arrived_.push_back(event);
     device_.clear_sent();
@@ -81,7 +94,7 @@ class MemorySession final : public SessionPort {
   }
 
   Device device_;
-  Instant now_{};
+  Instant now_;
   bool is_open_ = false;
   std::deque<SessionEvent> arrived_;
 };

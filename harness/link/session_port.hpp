@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "harness/core/bytes.hpp"
@@ -50,6 +51,10 @@ class SessionPort {
   virtual void reset() = 0;
 
   [[nodiscard]] virtual Instant now() const = 0;
+
+  /// The socket of a real connection, for what has to outlive this process; none in memory or
+  /// without a connection.
+  [[nodiscard]] virtual std::optional<int> descriptor() const { return std::nullopt; }
 };
 
 }  // namespace armjig

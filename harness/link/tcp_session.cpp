@@ -78,6 +78,9 @@ class TcpSession final : public SessionPort {
   }
 
   [[nodiscard]] Instant now() const override { return clock_.now(); }
+  [[nodiscard]] std::optional<int> descriptor() const override {
+    return socket_.is_open() ? std::optional{socket_.value()} : std::nullopt;
+  }
 
  private:
   /// Closing with unread bytes would send a reset.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "harness/rig/demo_judge.hpp"
+#include "harness/rig/kinovazed_judge.hpp"
 #include "harness/rig/parol6_judge.hpp"
 
 namespace armjig {
@@ -16,6 +17,7 @@ constexpr std::array<std::string_view, kHazardCount> kHazards{"observe", "state"
                                                               "home",    "grip",  "crash"};
 constexpr std::array kJudges{
     JudgeEntry{"demo", demo::make_judge},
+    JudgeEntry{"kinovazed", kinovazed::make_judge},
     JudgeEntry{"parol6", parol6::make_judge},
 };
 /// The stop leaves until the device shows that it heard it, but not more often than that.

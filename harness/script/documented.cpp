@@ -321,8 +321,8 @@ ParseResult parse_documented(const Lines& lines) {
     cursor.skip_blanks();
     if (cursor.is_at_end() || cursor.rest().starts_with(kComment)) continue;
     auto statement = read_statement(cursor);
-    if (statement) program.statements.push_back(*std::move(statement));
     if (!statement) errors.push_back(statement.error());
+    if (statement) program.statements.push_back(*std::move(statement));
     if (errors.size() == kMostErrors) break;
   }
   if (errors.empty()) check_frame(program, lines.empty() ? 1 : lines.back().number, errors);

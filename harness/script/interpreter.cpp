@@ -13,16 +13,20 @@ using parol6::JointSteps;
 constexpr double kTick = 0.01;
 constexpr int kLongestHold = 20;
 
-/// What the vendor's program sends besides joints: outputs off, and a gripper's set-point that asks
-/// for nothing.
-CommandFrame first_frame(const InterpreterSettings& settings) {
+constexpr std::uint8_t kGripperGoes = parol6::gripper_command::kActivate |
+                                      parol6::gripper_command::kGoTo |
+                                      parol6::gripper_command::kReleaseDirection;
+
+/// What a host sends besides joints: outputs off, and a gripper's set-point that asks for nothing.
+/// The commander lets a gripper go there all the same, the host that was recorded does not.
+CommandFrame first_frame(const InterpreterSettings& settings, Dialect dialect) {
   CommandFrame frame;
   frame.command = parol6::Command::kIdle;
   frame.affected_joints = 0xFF;
   frame.gripper = {.position = 1,
                    .speed = 1,
                    .current = Milliamperes{1},
-                   .command = 1,
+                   .command = dialect == Dialect::kCommander ? kGripperGoes : std::uint8_t{1},
                    .id = settings.gripper_id};
   frame.check = parol6::kCheckHost;
   return frame;
@@ -61,7 +65,7 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 Interpreter::Interpreter(const Program& program, const InterpreterSettings& settings)
     : program_{program},
       settings_{settings},
-      frame_{first_frame(settings)},
+      frame_{first_frame(settings, program.dialect)},
       passes_left_{settings.passes} {
   settings_.planner.rules = rules_of(program.dialect);
 }
@@ -122,9 +126,7 @@ std::optional<Diagnostic> Interpreter::execute(const JointSteps& position) {
         frame_.gripper.position = gripper.position;
         frame_.gripper.speed = gripper.speed;
         frame_.gripper.current = gripper.current;
-        frame_.gripper.command = parol6::gripper_command::kActivate |
-                                 parol6::gripper_command::kGoTo |
-                                 parol6::gripper_command::kReleaseDirection;
+        frame_.gripper.command = kGripperGoes;
         return wait(1);
       },
       [&](const GripperCalibration& /*calibration*/) {

@@ -51,6 +51,9 @@ class Interpreter {
 
   /// The statement that the newest frame belongs to.
   [[nodiscard]] std::size_t statement() const noexcept { return statement_; }
+  /// What the newest frame has for the gripper; before the first, that of a program which says
+  /// nothing about it.
+  [[nodiscard]] const parol6::GripperSetPoint& gripper() const noexcept { return frame_.gripper; }
   /// The move that the newest frame belongs to; null if the arm shall stand.
   [[nodiscard]] const ActiveMove* move() const noexcept { return move_ ? &*move_ : nullptr; }
 

@@ -20,7 +20,7 @@ constexpr int kFramesOfRest = 5;
 }  // namespace
 
 ProgramRun::ProgramRun(const Program& program, const InterpreterSettings& settings)
-    : program_{program}, interpreter_{program, settings} {}
+    : program_{program}, interpreter_{program, settings}, gripper_{interpreter_.gripper()} {}
 
 std::string ProgramRun::take_news() { return std::exchange(news_, {}); }
 
@@ -77,12 +77,10 @@ void ProgramRun::apply(parol6::Drive& drive, const parol6::CommandFrame& frame) 
     drive.idle();
   }
   drive.set_outputs(frame.in_out);
-  const bool says_something =
-      (frame.gripper.command & parol6::gripper_command::kGoTo) != 0 || frame.gripper.mode != 0;
-  if (says_something && frame.gripper != gripper_) {
-    drive.set_gripper(frame.gripper);
-    gripper_ = frame.gripper;
-  }
+  if (frame.gripper == gripper_) return;
+  drive.set_gripper(frame.gripper);
+  gripper_ = frame.gripper;
+  gripper_.mode = 0;  // it leaves once
 }
 
 ProgramRun::Wanted ProgramRun::wanted() {

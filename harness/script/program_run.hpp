@@ -68,8 +68,8 @@ class ProgramRun final : public parol6::Activity {
   std::vector<MoveResult> moves_;
   std::vector<RunSample> samples_;
   std::size_t frames_ = 0;
-  std::deque<Wanted> under_way_;  ///< frames that telemetry does not show yet
-  parol6::GripperSetPoint gripper_;
+  std::deque<Wanted> under_way_;     ///< frames that telemetry does not show yet
+  parol6::GripperSetPoint gripper_;  ///< as the program left it
   std::optional<std::size_t> told_statement_;
   std::string news_;
   bool has_ended_ = false;

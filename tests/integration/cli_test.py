@@ -118,6 +118,10 @@ def rows(folder):
         ("console parol6 --target emulated:", "enable\njog j1 500 0.2\n# a remark\nstatus\nquit\n",
          0, ["j1           100"]),
         ("console parol6 --target emulated:", "home\nstatus\n", 0, ["homed"]),
+        ("console parol6 --target emulated:", "home\njog world z 20 1\njog tool ry -5deg 1\n", 0,
+         ["the tool is at 0.000 262.5"]),
+        ("console parol6 --target emulated:", "jog world z 20 1\n", 1, ["!line 1: not homed"]),
+        ("console parol6 --target emulated:", "jog world z 61\n", 2, ["!at most 60 mm/s"]),
         ("console parol6 --target emulated:", "disable\njog j1 500 1\n", 1, ["!line 2"]),
         ("console parol6 --target emulated:", "frobnicate\n", 2, ["!line 1", "!frobnicate"]),
         # Programs.

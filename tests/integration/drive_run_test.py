@@ -6,7 +6,8 @@
 
 How late and how fast is measured and printed, not judged: it depends on the machine. Judged is that
 the counts add up: every deadline has a send or is reported as skipped, every frame was answered or is
-reported as lost, and with a link that loses frames on purpose just those are lost.
+reported as lost, and with a link that loses frames on purpose just those are lost. On a machine that
+stands still for so long that answers come too late to count, more may be.
 """
 import re
 import subprocess
@@ -15,6 +16,7 @@ import sys
 ARMJIG = sys.argv[1]
 SECONDS = int(sys.argv[2])
 RATE = 100
+STALL_MS = 100
 
 
 def watch(target, *more):
@@ -27,6 +29,7 @@ def watch(target, *more):
     print(link, round_trip, schedule, *rest, sep="\n")
     assert re.search(r"late by [0-9.]+ / [0-9.]+ / [0-9.]+ ms", schedule), "jitter is not reported"
     numbers = {word: int(count) for count, word in re.findall(r"(\d+) (\w+)", f"{link} {schedule}")}
+    numbers["most_ms"] = float(re.search(r"([0-9.]+) ms at", round_trip)[1])
     lost_on_purpose = sum(int(count) for count in re.findall(r"(\d+) chunks_lost", *rest or [""]))
     return numbers, lost_on_purpose
 
@@ -35,8 +38,10 @@ def check(numbers, lost_on_purpose):
     deadlines = numbers["sent"] + numbers["skipped"]
     assert deadlines == SECONDS * RATE, f"{deadlines} deadlines in {SECONDS} s"
     assert numbers["answered"] + numbers["lost"] == numbers["sent"], numbers
-    assert numbers["bad"] == numbers["surplus"] == 0, numbers
-    assert numbers["lost"] == lost_on_purpose, (numbers, lost_on_purpose)
+    assert numbers["bad"] == 0, numbers
+    given_up = numbers["lost"] - lost_on_purpose  # and perhaps answered after all, then surplus
+    assert 0 <= numbers["surplus"] <= given_up, (numbers, lost_on_purpose)
+    assert given_up == 0 or numbers["most_ms"] > STALL_MS, (numbers, lost_on_purpose)
 
 
 def main():

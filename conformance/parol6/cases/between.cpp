@@ -37,6 +37,15 @@ void prompt(BoardBench& board) {
                     fmt::format("{} were", in_time));
 }
 
+void all_whole(BoardBench& board) {
+  for (int i = 0; i < 20; ++i) {
+    board.send(encode(idle()));
+    const auto message = board.receive(board.answer_time());
+    if (!message) return board.fail_by_silence("a telemetry frame", "silence");
+    if (!message->fault.empty()) board.fail("60 bytes FF FF FF 38 ... 01 02", message->fault);
+  }
+}
+
 void outputs_stay(BoardBench& board) {
   auto frame = idle();
   frame.in_out = io_flag::kOut1 | io_flag::kOut2;
@@ -118,6 +127,8 @@ void demo_in_homing(BoardBench& board) {
   board.about("j1, which homes downward, in 500 ms of code 69");
   board.expect_true(steps(stretch, 0) > 100, "more than 100 steps up",
                     fmt::format("{} steps", steps(stretch, 0)));
+  board.about("a jog after it");
+  expect_moved(board, run(board, jog(4, 1000), 50ms));
 }
 
 void demo_interrupted_while_disabled(BoardBench& board) {
@@ -151,8 +162,9 @@ void open_gripper(BoardBench& board) {
   const auto is_calibrated = [](const Answer& answer) {
     return (answer.gripper.status & gripper_status::kCalibrated) != 0;
   };
-  board.act(idle());
-  const auto answer = board.act(idle());
+  const GripperSetPoint active{.command = gripper_command::kActivate};
+  board.act(with_gripper(active));
+  const auto answer = board.act(with_gripper(active));
   if (answer.gripper.current == Milliamperes{2} && answer.gripper.status == 1) {
     return board.leave_open("no gripper answers on the board's CAN");
   }
@@ -197,6 +209,10 @@ constexpr Case kCases[] = {
     {.requirement = "parol6.frame.prompt",
      .rule = "Of 50 answers at 100 Hz more than half come within 10 ms.",
      .run = on<prompt>},
+    {.requirement = "parol6.telemetry.layout",
+     .variant = "always",
+     .rule = "Twenty answers are all whole.",
+     .run = on<all_whole>},
     {.requirement = "parol6.telemetry.outputs",
      .variant = "stay",
      .rule = "Outputs stay on in a second frame that wants them.",

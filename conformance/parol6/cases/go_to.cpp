@@ -227,7 +227,7 @@ void expect_far(BoardBench& board, const Speeds& most) {
       board.about(fmt::format("a go-to of j{} to a far target", j + 1));
       const auto frame = go_to(beside(rest, j, sign * 100'000));
       const auto stretch = run(board, frame, 20ms);
-      board.expect(stretch.after, speed_field(j), sign * most[j]);
+      board.expect(stretch.after, speed_field(j), std::int64_t{sign} * most[j]);
       expect_speed(board, stretch, j, sign * most[j]);
     }
     board.act(idle());

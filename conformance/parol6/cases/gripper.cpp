@@ -45,10 +45,12 @@ int position(BoardBench& board, const GripperSetPoint& set_point) {
   return board.ask(with_gripper(set_point)).gripper.position;
 }
 
-/// Calibrates the gripper, stands it at `place`. Leaves the case open if there is no gripper.
+/// Calibrates the gripper, stands it at `place`. An active one cannot be taken for none. Leaves the
+/// case open if there is no gripper.
 void prepare(BoardBench& board, int place) {
-  board.act(idle());
-  const auto answer = board.act(idle());
+  const GripperSetPoint active{.command = gripper_command::kActivate};
+  board.act(with_gripper(active));
+  const auto answer = board.act(with_gripper(active));
   if (is_untold(answer)) return board.leave_open("no gripper answers on the board's CAN");
   if (!is_calibrated(answer)) {
     board.act(with_gripper({.mode = 1}));
@@ -245,7 +247,8 @@ void speed_map(BoardBench& board) {
     board.act(frame);
     const auto before = board.act(frame);
     const auto after = board.keep_asking(frame, 300ms);
-    const auto rate = (speed * 79'960 / 255 + 40) * 255.0 / 10'558;  // bytes/s
+    const auto steps_per_second = speed * 79'960 / 255 + 40;
+    const auto rate = steps_per_second * 255.0 / 10'558;  // bytes/s
     const auto seconds = [](Duration time) { return std::chrono::duration<double>(time).count(); };
     // Each answer is as old as the frame before it at most.
     const auto shortest = seconds(after.asked - before.received) - 0.02;

@@ -2,6 +2,8 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <optional>
+#include <utility>
 
 #include "conformance/parol6/board_bench.hpp"
 #include "conformance/parol6/chapters.hpp"
@@ -193,8 +195,9 @@ void same_speed(BoardBench& board) {
   board.touch("position.j2", -51'400);
   board.touch("position.j3", 35'000);
   board.act(with_code(100));
-  const auto backs_off = [](const Answer& answer) {
-    return answer.speed[0].value == -2050 && answer.position[0].value > 100;
+  const auto backs_off = [before = std::optional<Steps>{}](const Answer& answer) mutable {
+    const auto last = std::exchange(before, answer.position[0]);
+    return answer.speed[0].value == -2050 && last && answer.position[0].value > last->value;
   };
   board.about("homing that has reached the switches of J1 to J3");
   if (!board.ask_until(idle(), backs_off, 5s)) board.fail("j1 to back off", "it does not");

@@ -51,6 +51,7 @@ bool DefectiveArm::set_input(Instant time, std::string_view name, std::int64_t v
     asked_.clear();
     last_asked_ = {};
     last_passed_ = {};
+    std::ranges::fill(quirk_memories_, QuirkMemory{});
   }
   const bool is_known = arm_.set_input(time, name, value);
   take_answers();
@@ -82,22 +83,23 @@ CommandFrame DefectiveArm::changed(const CommandFrame& asked, Duration gap) {
     quirk_memories_[i].gap = gap;
     if (const auto hear = defects_.quirks[i]->hear) hear(frame, quirk_memories_[i], arm_.board());
   }
-  const auto action = action_of(frame.command, last_passed_.command);
-  // A board that goes on with the command before does so with all of it.
-  if (action != frame.command && action == last_passed_.command) {
-    frame.position = last_passed_.position;
-    frame.speed = last_passed_.speed;
-  }
-  frame.command = action;
+  apply_row(frame);
   return frame;
 }
 
-Command DefectiveArm::action_of(Command code, Command before) const {
-  const auto meaning = has_meaning(code) ? code : kUnknown;
+void DefectiveArm::apply_row(CommandFrame& frame) const {
+  const auto meaning = has_meaning(frame.command) ? frame.command : kUnknown;
   for (const auto& row : defects_.rows) {
-    if (row.state == state() && row.code == meaning) return row.acts_as.value_or(before);
+    if (row.state != state() || row.code != meaning) continue;
+    if (row.acts_as) {
+      frame.command = *row.acts_as;
+    } else {  // the command before goes on, with all that belongs to it
+      frame.command = last_passed_.command;
+      frame.position = last_passed_.position;
+      frame.speed = last_passed_.speed;
+    }
+    return;
   }
-  return code;
 }
 
 BoardState DefectiveArm::state() const noexcept {

@@ -93,7 +93,7 @@ class DefectiveArm {
 
   void hear(Instant time, const Ears::Body& body);
   [[nodiscard]] CommandFrame changed(const CommandFrame& asked, Duration gap);
-  [[nodiscard]] Command action_of(Command code, Command before) const;
+  void apply_row(CommandFrame& frame) const;
   [[nodiscard]] BoardState state() const noexcept;
   void take_answers();
   [[nodiscard]] SentBytes changed(const SentBytes& answer);

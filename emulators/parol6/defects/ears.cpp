@@ -53,7 +53,7 @@ std::vector<Ears::Body> Ears::hear(Instant time, Bytes bytes) {
     if (takes(time, since_frame_)) std::ranges::copy(*step.body, heard.emplace_back().begin());
     since_frame_ = 0;
   }
-  if (defect_ == EarDefect::kHearsFirstOfBurst && heard.size() > 1) heard.resize(1);
+  if (defect_ == EarDefect::kHearsFirstOfBurst && heard.size() > 1) heard = {heard.front()};
   if (defect_ == EarDefect::kHearsLastOfBurst && heard.size() > 1) heard = {heard.back()};
   if (defect_ == EarDefect::kTurnsBurstRound) std::ranges::reverse(heard);
   return heard;

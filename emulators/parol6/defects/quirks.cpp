@@ -161,7 +161,7 @@ void reset_counters(TelemetryFrame& answer, const CommandFrame& asked, QuirkMemo
 }
 constexpr Say kCreeps = [](TelemetryFrame& answer, const CommandFrame& asked, QuirkMemory& memory,
                            const Board&) {
-  if (asked.command != Command::kIdle) memory.is_set = true;
+  if (asked.command == Command::kEnable) memory.is_set = true;
   if (!memory.is_set) ++memory.numbers[0];
   answer.position[0] = answer.position[0] + Steps{memory.numbers[0]};
 };

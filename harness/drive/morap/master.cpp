@@ -7,7 +7,16 @@ namespace armjig::morap {
 namespace {
 
 BusCode code_of(Error error, BusCode collision) noexcept {
-  return error.code == ErrorCode::kTimedOut ? BusCode::kTimedOut : collision;
+  switch (error.code) {
+    case ErrorCode::kTimedOut:
+      return BusCode::kTimedOut;
+    case ErrorCode::kDisconnected:
+      return BusCode::kGone;
+    case ErrorCode::kForbidden:
+      return BusCode::kForbidden;
+    default:
+      return collision;
+  }
 }
 
 }  // namespace
@@ -26,11 +35,31 @@ std::string_view describe(BusCode code) noexcept {
       return "another took the bus in the middle of a transaction";
     case BusCode::kTimedOut:
       return "a device holds the clock";
+    case BusCode::kGone:
+      return "the bus is gone";
+    case BusCode::kForbidden:
+      return "not allowed by the guard";
   }
   return {};
 }
 
+/// Of a bus that does whole transactions only. It ends them at the first byte that is refused.
+BusCode Master::transfer(const BusMessage& message) {
+  const auto done = port_->transfer({&message, 1});
+  if (!done) return code_of(done.error(), BusCode::kByteCollision);
+  switch (*done) {
+    case Transfer::kDone:
+      return BusCode::kOk;
+    case Transfer::kAddressRefused:
+      return BusCode::kNoSuchAddress;
+    case Transfer::kByteRefused:
+      break;
+  }
+  return BusCode::kByteRefused;
+}
+
 BusCode Master::transmit(BusAddress address, Bytes data) {
+  if (!port_->has_operations()) return transfer(write_to(address, data));
   const auto answer = port_->start(address, BusPort::Access::kWrite);
   if (!answer) return code_of(answer.error(), BusCode::kStartCollision);
   auto code = *answer == Ack::kAck ? BusCode::kOk : BusCode::kNoSuchAddress;
@@ -48,6 +77,7 @@ BusCode Master::transmit(BusAddress address, Bytes data) {
 }
 
 BusCode Master::receive(BusAddress address, std::span<std::byte> out) {
+  if (!port_->has_operations()) return transfer(read_from(address, out));
   const auto answer = port_->start(address, BusPort::Access::kRead);
   if (!answer) return code_of(answer.error(), BusCode::kStartCollision);
   auto code = *answer == Ack::kAck ? BusCode::kOk : BusCode::kNoSuchAddress;
@@ -64,14 +94,18 @@ BusCode Master::receive(BusAddress address, std::span<std::byte> out) {
   return code;
 }
 
-std::vector<BusAddress> Master::scan() {
+ScanResult Master::scan() {
   constexpr std::uint8_t kFirst = 0x08;
   constexpr std::uint8_t kLast = 0x77;
-  std::vector<BusAddress> found;
+  ScanResult result;
   for (auto address = kFirst; address <= kLast; ++address) {
-    if (poke({address}) == BusCode::kOk) found.push_back({address});
+    const auto code = poke({address});
+    if (code == BusCode::kOk) result.addresses.push_back({address});
+    if (code == BusCode::kOk || code == BusCode::kNoSuchAddress) continue;
+    result.code = code;
+    break;
   }
-  return found;
+  return result;
 }
 
 }  // namespace armjig::morap

@@ -11,7 +11,7 @@
 
 namespace armjig::morap {
 
-/// How a transaction ended: the codes of the vendor's master library, and one of ours.
+/// How a transaction ended: the codes of the vendor's master library, and some of ours.
 enum class BusCode : std::uint8_t {
   kOk = 0,
   kNoSuchAddress = 1,   ///< the address was not acknowledged; nothing else was sent
@@ -19,10 +19,18 @@ enum class BusCode : std::uint8_t {
   kStartCollision = 3,  ///< the bus was taken or held at the start; there was no stop
   kByteCollision = 4,   ///< the same at a byte; the rest was left out
   kTimedOut = 6,        ///< a device held the clock; the vendor's library hangs here
+  kGone = 7,            ///< the adapter was pulled out
+  kForbidden = 8,       ///< the guard before a real device refused it; nothing was sent
 };
 
 /// One sentence without a full stop.
 [[nodiscard]] std::string_view describe(BusCode code) noexcept;
+
+/// Who answered, up to the end or to the first trouble with the bus.
+struct ScanResult {
+  BusCode code = BusCode::kOk;
+  std::vector<BusAddress> addresses;
+};
 
 /// Transactions as the vendor's master library does them: no repeated start, no second try.
 class Master {
@@ -37,13 +45,15 @@ class Master {
   /// A write of nothing: is anybody there?
   BusCode poke(BusAddress address) { return transmit(address, {}); }
 
-  /// Pokes all addresses that are not reserved, 08 to 77; those that answer.
-  [[nodiscard]] std::vector<BusAddress> scan();
+  /// Pokes all addresses that are not reserved, 08 to 77.
+  [[nodiscard]] ScanResult scan();
 
   void wait(Duration duration) { port_->wait_until(port_->now() + duration); }
   [[nodiscard]] Instant now() const { return port_->now(); }
 
  private:
+  BusCode transfer(const BusMessage& message);
+
   BusPort* port_;
 };
 

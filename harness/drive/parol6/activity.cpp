@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "harness/drive/parol6/stillness.hpp"
 #include "harness/wire/parol6/fields.hpp"
 #include "harness/wire/parol6/joints.hpp"
 #include "harness/wire/parol6/readings.hpp"
@@ -20,8 +21,6 @@ using namespace std::chrono_literals;
 using Ending = Activity::Ending;
 
 constexpr Duration kPeriod = 10ms;
-/// So long telemetry has to show the same places until the arm is said to stand.
-constexpr Duration kToStand = 50ms;
 /// Time for a frame to the board, and for telemetry back.
 constexpr Duration kToShow = 100ms;
 constexpr Duration kLongestHoming = 60s;
@@ -41,22 +40,6 @@ std::string name_of(Command command) {
   }
   return std::to_string(static_cast<int>(command));
 }
-
-/// Since when something has stayed as it is.
-template <class Value>
-class Stillness {
- public:
-  /// How long the value has been the same at `now`.
-  Duration observe(Instant now, const Value& value) {
-    if (!last_ || *last_ != value) since_ = now;
-    last_ = value;
-    return now - since_;
-  }
-
- private:
-  std::optional<Value> last_;
-  Instant since_{};
-};
 
 class CommandActivity final : public Activity {
  public:

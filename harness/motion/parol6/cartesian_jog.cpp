@@ -36,7 +36,7 @@ std::optional<Vector6> joint_speeds(const arm::Jacobian& jacobian, const Vector6
     matrix.col(j) = vector_of(jacobian[static_cast<std::size_t>(j)]);
   }
   const Matrix6 normal = matrix.transpose() * matrix + kDamping * Matrix6::Identity();
-  const Vector6 speeds = normal.ldlt().solve(matrix.transpose() * twist);
+  Vector6 speeds = normal.ldlt().solve(matrix.transpose() * twist);
   if ((matrix * speeds - twist).norm() > kNearly * twist.norm()) return std::nullopt;
   return speeds;
 }

@@ -34,6 +34,29 @@ std::optional<Refusal> check_limits(const JointSteps& goal) noexcept {
   return std::nullopt;
 }
 
+std::optional<Refusal> limit_in_the_way(const arm::Arm& arm, const arm::Branches& branches,
+                                        const arm::SixJoints& seed, double time) {
+  const auto joints = nearest(without_limits(arm), branches, seed);
+  const auto j = joints ? first_outside(arm, *joints) : kJointCount;
+  if (j == kJointCount) return std::nullopt;
+  const auto& joint = arm.joints[j];
+  const double angle = (*joints)[j];
+  return Refusal{.reason = Refusal::Reason::kOutOfLimits,
+                 .joint = j,
+                 .value = to_degrees(angle),
+                 .limit = to_degrees(angle < joint.lower ? joint.lower : joint.upper),
+                 .time = time};
+}
+
+tl::expected<arm::SixJoints, Refusal> reach(const arm::Arm& arm, const arm::SphericalWrist& solver,
+                                            const arm::Pose& pose, const arm::SixJoints& seed,
+                                            double time) {
+  const auto branches = solver.solve(pose, seed);
+  if (const auto joints = nearest(arm, branches, seed)) return *joints;
+  const Refusal unreachable{.reason = Refusal::Reason::kUnreachable, .time = time};
+  return tl::unexpected{limit_in_the_way(arm, branches, seed, time).value_or(unreachable)};
+}
+
 std::optional<Refusal> check_peak(std::size_t joint, const Peak& peak) noexcept {
   const double max_speed = kJointRanges[joint].max_speed.value;
   const double max_acceleration = kJointRanges[joint].max_acceleration;

@@ -50,12 +50,18 @@ SetPoint polynomial(const arm::SixJoints& from, const arm::SixJoints& to, std::s
                     std::size_t last, double duration) noexcept {
   const motion::Quintic unit{0, 1, 1};
   const auto share = unit.at(static_cast<double>(k) / static_cast<double>(last));
-  SetPoint set_point;
+  // In one loop for each operation, which compilers do for several joints at once.
+  arm::SixJoints positions;
+  arm::SixJoints speeds;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const double way = to[j] - from[j];
-    set_point.position[j] = Steps{cut_off(steps_of_radians(j, from[j] + way * share.position))};
-    set_point.speed[j] =
-        StepsPerSecond{cut_off(step_rate_of(j, way * share.speed / (duration - kTick)))};
+    positions[j] = steps_of_radians(j, from[j] + way * share.position);
+    speeds[j] = step_rate_of(j, way * share.speed / (duration - kTick));
+  }
+  SetPoint set_point;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    set_point.position[j] = Steps{cut_off(positions[j])};
+    set_point.speed[j] = StepsPerSecond{cut_off(speeds[j])};
   }
   return set_point;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -56,9 +57,7 @@ inline constexpr double kMostSteps = 8'388'607;
 /// What a set-point has: an integer number, the rest cut off toward zero. Beyond what a frame can
 /// hold, the most that it can.
 [[nodiscard]] constexpr std::int32_t cut_off(double steps) noexcept {
-  if (steps > kMostSteps) return static_cast<std::int32_t>(kMostSteps);
-  if (steps < -kMostSteps) return -static_cast<std::int32_t>(kMostSteps);
-  return static_cast<std::int32_t>(steps);
+  return static_cast<std::int32_t>(std::clamp(steps, -kMostSteps, kMostSteps));
 }
 /// The nearest step, of two equally near the even one: what the board's own constants and the
 /// Python API have.

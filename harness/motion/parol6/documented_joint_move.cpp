@@ -121,7 +121,9 @@ tl::expected<Plan, Refusal> planned_at_pace(Way way, const Timing& timing, Track
       motion::Trapezoid::fastest(0, way.of(leading), pace->speed, pace->acceleration);
   constexpr double kRounding = 1e-9;
   way.ticks = static_cast<std::size_t>(std::ceil(fastest.duration() / kTick - kRounding));
-  if (way.ticks == 0) way.ticks = 1;  // nowhere to go
+  if (way.ticks == 0) {  // nowhere to go
+    return planned_in_time(way, kTick, Law::kTrapezoid, tracking, limits);
+  }
   const double cruise =
       std::min(fastest.peak().speed / std::abs(way.of(leading)), 2 / way.duration());
   const auto share = motion::Trapezoid::cruising(0, 1, cruise, way.duration());

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "harness/arm/models.hpp"
@@ -47,37 +47,30 @@ std::optional<Refusal> check_step(const std::vector<arm::SixJoints>& path,
   return std::nullopt;
 }
 
-void lift_limits(arm::Arm& arm) {
-  for (auto& joint : arm.joints) {
-    joint.lower = -std::numeric_limits<double>::infinity();
-    joint.upper = std::numeric_limits<double>::infinity();
-  }
+arm::Arm arm_for(LimitCheck limits) {
+  auto arm = arm::parol6_commander();
+  return limits == LimitCheck::kIgnored ? without_limits(std::move(arm)) : arm;
 }
 
 /// The postures along a line, one each tick, as long as the arm can follow.
 class Follower {
  public:
   Follower(const arm::SixJoints& start, const PlannerSettings& settings)
-      : settings_{settings}, path_{start} {
-    if (settings.limits == LimitCheck::kIgnored) lift_limits(arm_);
-  }
+      : settings_{settings}, arm_{arm_for(settings.limits)}, path_{start} {}
 
   [[nodiscard]] arm::Pose start_pose() const noexcept { return forward(arm_, path_.front()); }
 
-  /// Whether any posture has that pose, whatever lies between.
-  [[nodiscard]] bool can_reach(const arm::Pose& pose) const noexcept {
-    return nearest(arm_, solver_.solve(pose, path_.front()), path_.front()).has_value();
+  /// Why no posture has that pose, whatever lies between.
+  [[nodiscard]] std::optional<Refusal> check_target(const arm::Pose& pose, double time) const {
+    const auto joints = reach(arm_, solver_, pose, path_.front(), time);
+    return joints ? std::nullopt : std::optional{joints.error()};
   }
 
   /// The posture of the next tick. A refusal ends the path in front of it.
   [[nodiscard]] std::optional<Refusal> go_to(const arm::Pose& pose) {
     const double time = kTick * static_cast<double>(path_.size());
-    const auto branches = solver_.solve(pose, path_.back());
-    if (branches.empty()) {
-      return Refusal{.reason = Refusal::Reason::kUnreachable, .time = time};
-    }
-    const auto joints = nearest(arm_, branches, path_.back());
-    if (!joints) return out_of_limits(branches, time);
+    const auto joints = reach(arm_, solver_, pose, path_.back(), time);
+    if (!joints) return joints.error();
     const auto refusal = check_step(path_, *joints);
     if (!refusal || settings_.limits == LimitCheck::kIgnored) {
       is_beside_ = false;
@@ -91,7 +84,11 @@ class Follower {
       path_.push_back(approached(path_.back(), *joints));
       return std::nullopt;
     }
-    if (!is_near) return refusal;
+    if (!is_near) {
+      // Who leaps without a singularity does so into another posture, away from a limit.
+      const auto branches = solver_.solve(pose, path_.back());
+      return limit_in_the_way(arm_, branches, path_.back(), time).value_or(*refusal);
+    }
     return Refusal{.reason = Refusal::Reason::kSingular, .joint = refusal->joint, .time = time};
   }
 
@@ -101,19 +98,8 @@ class Follower {
   }
 
  private:
-  /// Of the branch that goes on from the last posture.
-  [[nodiscard]] Refusal out_of_limits(const arm::Branches& branches, double time) const {
-    auto free = arm_;
-    lift_limits(free);
-    const auto joints = *nearest(free, branches, path_.back());
-    const auto j = std::min(first_outside(arm_, joints), kJointCount - 1);
-    const auto& joint = arm_.joints[j];
-    return {Refusal::Reason::kOutOfLimits, j, to_degrees(joints[j]),
-            to_degrees(joints[j] < joint.lower ? joint.lower : joint.upper), time};
-  }
-
   PlannerSettings settings_;
-  arm::Arm arm_ = arm::parol6_commander();
+  arm::Arm arm_;
   arm::SphericalWrist solver_ = *arm::SphericalWrist::of(arm_);
   std::vector<arm::SixJoints> path_;
   bool is_beside_ = false;  ///< the line, since a joint could not follow
@@ -158,9 +144,7 @@ tl::expected<Plan, Refusal> plan_documented_line(const LineTarget& target, const
   Follower follower{radians_of(start), settings};
   const auto from = follower.start_pose();
   const auto to = target.from(from);
-  if (!follower.can_reach(to)) {
-    return tl::unexpected{Refusal{.reason = Refusal::Reason::kUnreachable, .time = duration}};
-  }
+  if (const auto refusal = follower.check_target(to, duration)) return tl::unexpected{*refusal};
   const motion::PoseLine line{from, to};
   Plan plan{.tracking = tracking, .law = law, .duration = duration};
   for (std::size_t k = 1; k <= last && !plan.stop; ++k) {

@@ -2,6 +2,7 @@
 #include "harness/motion/parol6/planner.hpp"
 
 #include "harness/arm/models.hpp"
+#include "harness/motion/parol6/checks.hpp"
 #include "harness/motion/parol6/commander_ik.hpp"
 #include "harness/motion/parol6/conversion.hpp"
 #include "harness/motion/parol6/joint_move.hpp"
@@ -58,11 +59,9 @@ Planned plan_commander_pose(const Move& move, const JointSteps& start,
 Planned plan_documented_pose(const Move& move, const JointSteps& start,
                              const PlannerSettings& settings) {
   const auto arm = arm::parol6_commander();
-  const auto here = radians_of(start);
   const auto pose = pose_of(move.target, settings.convention);
-  const auto branches = arm::SphericalWrist::of(arm)->solve(pose, here);
-  const auto target = nearest(arm, branches, here);
-  if (!target) return tl::unexpected{Refusal{.reason = Refusal::Reason::kUnreachable}};
+  const auto target = reach(arm, *arm::SphericalWrist::of(arm), pose, radians_of(start), 0);
+  if (!target) return tl::unexpected{target.error()};
   return plan_documented_joints(*target, start, move.timing, move.tracking, settings.limits);
 }
 

@@ -108,7 +108,7 @@ struct Refusal {
 
   friend bool operator==(const Refusal&, const Refusal&) = default;
 };
-/// For people: `j5 would be at 90.000 deg at 0.00 s; its range ends at 90.000 deg`.
+/// For people: `j5 would be at 95.100 deg at 1.30 s, its range ends at 90.000 deg`.
 [[nodiscard]] std::string describe(const Refusal& refusal);
 
 /// A stretch of a line where the tool cannot move in every direction, followed or not.

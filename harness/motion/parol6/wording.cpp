@@ -11,6 +11,9 @@ std::string name_of(const Refusal& refusal) {
   return refusal.joint ? fmt::format("j{}", *refusal.joint + 1) : "a joint";
 }
 
+/// A move whose target is wrong is so before it begins.
+std::string moment(double time) { return time > 0 ? fmt::format(" at {:.2f} s", time) : ""; }
+
 std::string_view place_of(SingularityNote::Kind kind) noexcept {
   switch (kind) {
     case SingularityNote::Kind::kShoulder:
@@ -29,16 +32,16 @@ std::string describe(const Refusal& refusal) {
   const auto [reason, joint, value, limit, time] = refusal;
   switch (reason) {
     case Refusal::Reason::kOutOfLimits:
-      return fmt::format("{} would be at {:.3f} deg at {:.2f} s, its range ends at {:.3f} deg",
-                         name_of(refusal), value, time, limit);
+      return fmt::format("{} would be at {:.3f} deg{}, its range ends at {:.3f} deg",
+                         name_of(refusal), value, moment(time), limit);
     case Refusal::Reason::kTooFast:
-      return fmt::format("{} would need {:.0f} steps/s at {:.2f} s, it can do {:.0f}",
-                         name_of(refusal), value, time, limit);
+      return fmt::format("{} would need {:.0f} steps/s{}, it can do {:.0f}", name_of(refusal),
+                         value, moment(time), limit);
     case Refusal::Reason::kTooMuchAcceleration:
       return fmt::format("{} would need {:.0f} steps/s^2, it can do {:.0f}", name_of(refusal),
                          value, limit);
     case Refusal::Reason::kUnreachable:
-      return fmt::format("no posture reaches the pose at {:.2f} s", time);
+      return fmt::format("no posture reaches the pose{}", moment(time));
     case Refusal::Reason::kSingular:
       if (!joint) return "near a singularity the tool cannot move that way";
       return fmt::format("near a singularity {} would leap at {:.2f} s", name_of(refusal), time);

@@ -159,26 +159,26 @@ std::span<const Field> select_fields() noexcept { return kCommandFields; }
 
 std::span<const Field> write_fields(const CommandInfo& command) {
   assert(command.payload != Payload::kControllerSet);
-  static const auto lists = lists_of(commands(), command_list);
+  static const auto kLists = lists_of(commands(), command_list);
   if (command.payload == Payload::kNone) return kCommandFields;
   if (command.payload == Payload::kTuneRequest) return kTuneFields;
-  return lists[static_cast<std::size_t>(&command - commands().data())];
+  return kLists[static_cast<std::size_t>(&command - commands().data())];
 }
 
 std::span<const Field> program_fields(const ControllerSet& set) {
-  static const auto lists = set_lists({kBusAddress, kCommand});
-  return lists[list_number(set)];
+  static const auto kLists = set_lists({kBusAddress, kCommand});
+  return kLists[list_number(set)];
 }
 
 std::span<const Field> read_fields(const ReadInfo& info) {
   assert(info.kind != ReadKind::kControllerSet);
-  static const auto lists = lists_of(readings(), reading_list);
-  return lists[static_cast<std::size_t>(&info - readings().data())];
+  static const auto kLists = lists_of(readings(), reading_list);
+  return kLists[static_cast<std::size_t>(&info - readings().data())];
 }
 
 std::span<const Field> read_set_fields(const ControllerSet& set) {
-  static const auto lists = set_lists({kBusAddress});
-  return lists[list_number(set)];
+  static const auto kLists = set_lists({kBusAddress});
+  return kLists[list_number(set)];
 }
 
 std::span<const Field> pen_fields() noexcept { return kPenFields; }

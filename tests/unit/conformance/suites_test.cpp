@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "conformance/run.hpp"
+#include "conformance/selection.hpp"
 #include "conformance/suite.hpp"
 #include "harness/rig/target.hpp"
 
@@ -117,6 +120,32 @@ TEST(Parol6Suite, FindsExactlyTheMappedDeviationsOfTheFirmwareFromTheDocument) {
     const auto wanted =
         requirement.profiles == Profiles::kDocumented ? Verdict::kDeviation : Verdict::kPass;
     EXPECT_EQ(row.verdict, wanted) << to_text(row);
+  }
+}
+
+/// Runs every case of the suite once, in a random order, on one and the same device.
+std::vector<std::string> findings_in_any_order(const Suite& suite, std::uint32_t seed) {
+  auto cases = select(suite, Profile::kFirmware, {});
+  std::ranges::shuffle(cases, std::mt19937{seed});
+  const auto bench = suite.open({.target = *parse_target("emulated:")});
+  std::vector<std::string> findings;
+  for (const auto* one : cases) {
+    (*bench)->begin(Profile::kFirmware, seed);
+    (*bench)->bring_to(one->start);
+    if (!(*bench)->is_over()) one->run(**bench);
+    const auto& judgement = (*bench)->judgement();
+    if (judgement.verdict == Verdict::kPass) continue;
+    findings.push_back(name_of(*one) + ": " + judgement.expected + ", but " + judgement.actual);
+  }
+  return findings;
+}
+
+// Filters, shards and repetitions all change what ran before a case.
+TEST(Suites, FindTheSameInWhateverOrderTheirCasesRun) {
+  for (const auto& suite : suites()) {
+    for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
+      EXPECT_THAT(findings_in_any_order(suite, seed), testing::IsEmpty());
+    }
   }
 }
 

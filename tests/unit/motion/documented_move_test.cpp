@@ -163,6 +163,14 @@ TEST(DocumentedPoseMove, IsRefusedOutOfReach) {
   EXPECT_EQ(refused(move, standby()).reason, Reason::kUnreachable);
 }
 
+TEST(DocumentedPoseMove, NamesTheJointWhoseLimitIsInTheWay) {
+  // Standby turned half around: joint 1 would have to be at 180 degrees.
+  const Move move{.kind = Move::Kind::kPose, .target = {-262.57, 0, 288.75, 0, -90, 0}};
+  const auto refusal = refused(move, standby());
+  EXPECT_EQ(refusal.reason, Reason::kOutOfLimits);
+  EXPECT_TRUE(refusal.joint.has_value());
+}
+
 /// How far a plan's postures are from the straight line between its ends.
 struct Deviation {
   double mm{};
@@ -264,6 +272,16 @@ TEST(DocumentedLine, StopsAtASingularityItCannotPass) {
   ASSERT_FALSE(line.singularities.empty());
   EXPECT_EQ(line.singularities.front().kind, SingularityNote::Kind::kWrist);
   EXPECT_EQ(line.singularities.front().last + 1, line.set_points.size());
+}
+
+TEST(DocumentedLine, NamesTheLimitThatItWouldPassAndNotTheLeapAroundIt) {
+  // Joint 4 is led out of its range; another posture within all ranges is far away.
+  const Move move{
+      .kind = Move::Kind::kLine, .target = {60, 262, 200, -90, 40, -90}, .timing = {.duration = 6}};
+  const auto refusal = refused(move, at({90, -90, 180, 0, -20, 180}));
+  EXPECT_EQ(refusal.reason, Reason::kOutOfLimits);
+  EXPECT_EQ(refusal.joint, 3U);
+  EXPECT_NEAR(std::abs(refusal.value), 105.47, 5);
 }
 
 TEST(DocumentedLine, IsRefusedAtASingularityIfAskedTo) {

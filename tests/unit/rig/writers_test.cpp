@@ -79,13 +79,19 @@ std::vector<std::string> files_with(const std::string& pattern) {
 const std::vector<Step>& steps() {
   static const std::vector<Step> all{
       {"opening a device that is not emulated",
-       R"(\b(open_pty|open_tcp_stream|open_serial|make_tcp_session)\s*\()",
-       {{"harness/link/real_streams.cpp", "makes them"},
+       R"(\b(open_pty|open_tcp_stream|open_serial|open_i2c_dev|open_i2c_tiny_usb|make_tcp_session)\s*\()",
+       {{"harness/link/i2c_dev.cpp", "makes them"},
+        {"harness/link/i2c_dev.hpp", "declares them"},
+        {"harness/link/i2c_tiny_usb.cpp", "makes them"},
+        {"harness/link/i2c_tiny_usb.hpp", "declares them"},
+        {"harness/rig/bus_rig.cpp", "guards what is not emulated; bus_rig_test.cpp shows that"},
+        {"harness/link/real_streams.cpp", "makes them"},
         {"harness/link/real_streams.hpp", "declares them"},
         {"harness/link/serial_stream.cpp", "makes them"},
         {"harness/link/serial_stream.hpp", "declares them"},
         {"harness/link/tcp_session.cpp", "makes them"},
         {"harness/link/tcp_session.hpp", "declares them"},
+        {"harness/rig/server_rig.cpp", "guards it right behind, see the last test"},
         {"harness/rig/target.cpp", "in open_stream, which only Rig::open calls (next step)"}}},
       {"opening a target without a guard",
        R"(\bopen_stream\s*\()",
@@ -94,7 +100,12 @@ const std::vector<Step>& steps() {
         {"harness/rig/rig.cpp", "guards what is not emulated; rig_test.cpp shows that"}}},
       {"opening a rig",
        R"(Rig::open\s*\()",
-       {{"harness/rig/rig.cpp", "makes it"},
+       {{"harness/rig/bus_rig.cpp", "makes it"},
+        {"harness/rig/rig.cpp", "makes it"},
+        {"cli/bus_session.cpp", "for every subcommand that has a bus behind --target"},
+        {"harness/rig/server_rig.cpp", "makes the one for servers"},
+        {"cli/kinovazed_console.cpp", "hands its port to a drive"},
+        {"cli/server_stream.cpp", "for those who only listen"},
         {"cli/target_options.cpp", "for every subcommand that has --target"},
         {"conformance/demo/suite.cpp", "for `armjig conformance demo`"},
         {"conformance/parol6/suite.cpp", "for `armjig conformance parol6`"}}},
@@ -106,9 +117,12 @@ const std::vector<Step>& steps() {
         {"emulators/i2c/bus.cpp", "to the emulated devices on it"},
         {"emulators/i2c/bus.hpp", "to an emulated device"},
         {"emulators/kinovazed/server.cpp", "to its log"},
+        {"emulators/morap/step_response.cpp", "to an emulated bus"},
         {"emulators/replay/morap.cpp", "to an emulated bus"},
         {"harness/drive/morap/master.cpp", "whoever makes a master hands it a port"},
+        {"harness/link/bus_port.cpp", "to an emulated device"},
         {"harness/link/emulated_bus_port.hpp", "to an emulated bus"},
+        {"harness/link/i2c_tiny_usb.cpp", "makes them"},
         {"harness/link/impaired_bus.cpp", "passes on what it is given"},
         {"harness/link/impaired_stream.cpp", "passes on what it is given"},
         {"harness/link/memory_bus.hpp", "to an emulated device in memory"},
@@ -121,8 +135,14 @@ const std::vector<Step>& steps() {
        R"(#include "harness/link/(session_port|tcp_session)\.hpp")",
        {{"harness/link/impaired_session.hpp", "passes on what it is given"},
         {"harness/link/memory_session.hpp", "to an emulated device in memory"},
-        {"harness/link/tcp_session.cpp", "makes them; nobody opens them yet"},
-        {"harness/link/tcp_session.hpp", "declares them"}}},
+        {"harness/link/tcp_session.cpp", "makes them"},
+        {"harness/link/tcp_session.hpp", "declares them"},
+        {"harness/drive/kinovazed/client.hpp", "whoever makes a client hands it the port of a rig"},
+        {"harness/rig/session_guard.hpp", "is the guard"},
+        {"harness/rig/session_log.hpp", "passes on what it is given"},
+        {"harness/rig/server_rig.hpp", "puts log, guard and impairments around it"},
+        {"harness/rig/server_rig.cpp", "the same"},
+        {"emulators/host/emulated_session.hpp", "to an emulated server in memory"}}},
       {"system calls that put bytes on a wire",
        R"([^\w]::(write|pwrite|writev|send|sendto|sendmsg|sp_\w*write)\s*\()",
        {{"emulators/host/pty_link.cpp", "an emulated device answers its client"},
@@ -134,19 +154,30 @@ const std::vector<Step>& steps() {
         {"harness/link/real_streams.cpp", "answers it"},
         {"harness/link/serial_stream.cpp", "answers it"},
         {"harness/link/impaired_stream.hpp", "passes on what it is given"},
+        {"harness/link/session_port.hpp", "declares it for servers"},
+        {"harness/link/tcp_session.cpp", "answers it"},
+        {"harness/link/impaired_session.hpp", "passes on what it is given"},
         {"harness/rig/wire_log.hpp", "passes on what it is given"},
+        {"harness/rig/session_log.hpp", "passes on what it is given"},
+        {"harness/rig/session_guard.hpp", "passes on what it is given"},
+        {"harness/rig/session_guard.cpp", "hands it to the supervisor, which writes only the stop"},
         {"harness/rig/guard.hpp", "passes on what it is given"},
         {"harness/rig/guard.cpp", "hands it to the supervisor, which writes only the stop"}}},
       {"opening files by system call",
        R"([^\w]::(open|openat|socket|posix_openpt|sp_open)\s*\()",
        {{"emulators/host/pseudo_terminal.cpp",
          "the terminal on which an emulated device is served"},
+        {"harness/link/i2c_dev.cpp", "I2C buses"},
         {"harness/link/real_streams.cpp", "pseudo-terminals"},
         {"harness/link/serial_stream.cpp", "serial ports"},
         {"harness/rig/doctor.cpp", "a pseudo-terminal, to see whether there are any"}}},
       {"libraries that reach hardware",
        R"(#include <(libserialport\.h|libusb[^>]*|linux/i2c[^>]*|i2c/[^>]*|linux/spi[^>]*)>)",
-       {{"harness/link/serial_stream.cpp", "sets serial ports up"}}},
+       {{"emulators/host/i2c_adapter.hpp", "the emulated bus answers its client"},
+        {"emulators/host/virtual_i2c.cpp", "the emulated bus answers its client"},
+        {"harness/link/i2c_dev.cpp", "I2C buses"},
+        {"harness/link/serial_stream.cpp", "sets serial ports up"},
+        {"harness/link/usb_control.cpp", "for i2c_tiny_usb"}}},
   };
   return all;
 }
@@ -178,6 +209,17 @@ TEST(Writers, TheOnlyWayToARigIsTheOneThatGuards) {
   EXPECT_LT(opened, asked);
   EXPECT_LT(asked, guarded);
   EXPECT_EQ(code.find("= open_port(", opened + 1 + sizeof "port "), std::string::npos) << "twice";
+}
+
+TEST(Writers, TheOnlyWayToAServerIsTheOneThatGuards) {
+  const auto code =
+      without_comments(read(fs::path{ARMJIG_SOURCE_DIR} / "harness/rig/server_rig.cpp"));
+  const auto opened = code.find("port = open_session(");
+  const auto asked = code.find("if (!options.target.is_emulated())");
+  const auto guarded = code.find("make_unique<GuardedSession>(");
+  EXPECT_LT(opened, asked);
+  EXPECT_LT(asked, guarded);
+  EXPECT_NE(guarded, std::string::npos);
 }
 
 }  // namespace

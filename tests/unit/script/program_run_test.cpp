@@ -217,11 +217,13 @@ TEST(ProgramRun, LeavesTheGripperAloneUntilItIsNamed) {
   ProgramRun run{program, {}};
   ASSERT_TRUE(jig.go_through(run)->is_success);
   EXPECT_EQ(gripper_position(jig), 200);
-  const auto quiet = test::program_of("Delay(0.05)", Dialect::kDocumented);
-  Jig other;
-  ProgramRun quiet_run{quiet, {}};
-  ASSERT_TRUE(other.go_through(quiet_run)->is_success);
-  EXPECT_EQ(gripper_position(other), 0);
+  for (const auto dialect : {Dialect::kDocumented, Dialect::kCommander}) {
+    const auto quiet = test::program_of("Delay(0.05)", dialect);
+    Jig other;
+    ProgramRun quiet_run{quiet, {}};
+    ASSERT_TRUE(other.go_through(quiet_run)->is_success);
+    EXPECT_EQ(gripper_position(other), 0);
+  }
 }
 
 TEST(ProgramRun, ResultsKeepToTheirSchemaAndPlotsToWhatMoved) {

@@ -133,6 +133,15 @@ TEST(CommanderSchedule, P1PolynomialInATime) {
   }
 }
 
+// F6 of the reference: set-point 100 of P1 as a whole frame.
+TEST(CommanderSchedule, F6AFrameToTheByte) {
+  const CommanderMove move{"MoveJoint(0,-90,180,0,0,180,t=4)"};
+  const auto expected = armjig::test::hex(
+      "FFFFFF34 0023D5 FF8301 00E230 000000 000000 007D00 FFF565 000000 000000 000000 000000 000000"
+      "9C FF 00 00 0001 0001 0001 D0 00 00 E4 0102");
+  EXPECT_TRUE(armjig::test::same_bytes(parol6::encode(move.schedule().frames.at(100)), expected));
+}
+
 TEST(CommanderSchedule, AMoveTakesAFramePerSampleAndTwoMore) {
   const CommanderMove move{"MoveJoint(0,-90,180,0,0,180,t=4)"};
   const auto& frames = move.schedule().frames;

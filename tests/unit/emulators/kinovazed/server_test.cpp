@@ -66,7 +66,7 @@ TEST(KinovaServer, AnswersAsTheMatrixOfTheRecordingsSays) {
   ASSERT_GT(table["entries"].size(), 80U);
   for (const auto& cell : table["entries"]) {
     auto bench = bench_in(cell["state"]);
-    ASSERT_EQ(to_string(bench.server.state()), cell["state"]);
+    ASSERT_EQ(to_string(bench.server.state()), cell["state"].get<std::string>());
     bench.send(cell["command"].get<std::string>() + "\r\n");
     bench.pass(200ms);
     std::string replies;

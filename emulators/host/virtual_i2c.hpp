@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emulators/i2c/bus.hpp"
+#include "harness/core/error.hpp"
+
+namespace armjig {
+
+/// A device node /dev/i2c-N, without root, for programs that are started in its environment; no
+/// other sees it. They need not know: their calls of the C library are led here (umockdev). It is
+/// there as long as this object lives.
+class VirtualI2c {
+ public:
+  /// Problems: `kSystem` if the test bed cannot be made.
+  [[nodiscard]] static Outcome<VirtualI2c> open(i2c::Bus bus, int number);
+  VirtualI2c(VirtualI2c&&) noexcept;
+  VirtualI2c& operator=(VirtualI2c&&) noexcept;
+  VirtualI2c(const VirtualI2c&) = delete;
+  VirtualI2c& operator=(const VirtualI2c&) = delete;
+  ~VirtualI2c();
+
+  [[nodiscard]] const std::string& path() const noexcept;
+  /// `NAME=VALUE`: what a program needs in its environment.
+  [[nodiscard]] std::vector<std::string> environment() const;
+
+ private:
+  class Bed;
+  explicit VirtualI2c(std::unique_ptr<Bed> bed) noexcept;
+
+  std::unique_ptr<Bed> bed_;
+};
+
+}  // namespace armjig

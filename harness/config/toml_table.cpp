@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/config/toml_table.hpp"
+
+#define TOML_HEADER_ONLY 0  // Debian has it as a library
+#include <fmt/core.h>
+#include <toml++/toml.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace armjig {
+
+struct TomlTable::Part {
+  const toml::table* table{};
+  std::set<std::string, std::less<>> asked;
+};
+
+struct TomlTable::File {
+  std::string path;
+  toml::table root;
+  std::vector<std::shared_ptr<Part>> parts;
+  std::optional<Problem> first;
+
+  void note(const toml::source_region& where, std::string hint) {
+    if (first) return;
+    first = {ErrorCode::kMalformed, fmt::format("{}:{}", path, where.begin.line), std::move(hint)};
+  }
+};
+
+TomlTable::TomlTable(std::shared_ptr<File> file, std::shared_ptr<Part> part)
+    : file_{std::move(file)}, part_{std::move(part)} {
+  file_->parts.push_back(part_);
+}
+
+Outcome<TomlTable> TomlTable::read(const std::string& path) {
+  std::ifstream in{path, std::ios::binary};
+  if (!in) return problem(ErrorCode::kCannotRead, path, "check the path and its permissions");
+  const std::string text{std::istreambuf_iterator<char>{in}, {}};
+  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "it is a folder or cannot be read");
+  return parse(text, path);
+}
+
+Outcome<TomlTable> TomlTable::parse(std::string_view text, std::string path) {
+  auto file = std::make_shared<File>();
+  file->path = std::move(path);
+  try {
+    file->root = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    return problem(ErrorCode::kMalformed,
+                   fmt::format("{}:{}", file->path, error.source().begin.line),
+                   std::string{error.description()});
+  }
+  auto part = std::make_shared<Part>(Part{&file->root, {}});
+  return TomlTable{std::move(file), std::move(part)};
+}
+
+std::optional<double> TomlTable::number(std::string_view key) {
+  part_->asked.emplace(key);
+  const auto* node = part_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto value = node->value<double>(); value && node->is_number()) return value;
+  complain(key, fmt::format("{} has to be a number", key));
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> TomlTable::integer(std::string_view key, std::int64_t least,
+                                               std::int64_t most) {
+  part_->asked.emplace(key);
+  const auto* node = part_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  const auto value = node->value_exact<std::int64_t>();
+  if (value && *value >= least && *value <= most) return value;
+  complain(key, fmt::format("{} has to be an integer from {} to {}", key, least, most));
+  return std::nullopt;
+}
+
+std::optional<bool> TomlTable::boolean(std::string_view key) {
+  part_->asked.emplace(key);
+  const auto* node = part_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto value = node->value_exact<bool>()) return value;
+  complain(key, fmt::format("{} has to be true or false", key));
+  return std::nullopt;
+}
+
+std::optional<std::string> TomlTable::text(std::string_view key) {
+  part_->asked.emplace(key);
+  const auto* node = part_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (auto value = node->value_exact<std::string>()) return value;
+  complain(key, fmt::format("{} has to be a text in quotes", key));
+  return std::nullopt;
+}
+
+std::optional<std::vector<double>> TomlTable::numbers(std::string_view key) {
+  part_->asked.emplace(key);
+  const auto* node = part_->table->get(key);
+  if (node == nullptr) return std::nullopt;
+  const auto* array = node->as_array();
+  std::vector<double> values;
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+    const auto& element = (*array)[i];
+    if (element.is_number()) values.push_back(*element.value<double>());
+  }
+  if (array != nullptr && values.size() == array->size()) return values;
+  complain(key, fmt::format("{} has to be a list of numbers", key));
+  return std::nullopt;
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) {
+  part_->asked.emplace(key);
+  const auto* node = part_->table->get(key);
+  std::vector<TomlTable> found;
+  if (node == nullptr) return found;
+  const auto* array = node->as_array();
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+    const auto* table = (*array)[i].as_table();
+    if (table == nullptr) break;
+    found.push_back(TomlTable{file_, std::make_shared<Part>(Part{table, {}})});
+  }
+  if (array == nullptr || found.size() != array->size()) {
+    complain(key, fmt::format("write [[{}]], and the keys of each below it", key));
+  }
+  return found;
+}
+
+void TomlTable::complain(std::string_view key, std::string hint) {
+  const auto* node = part_->table->get(key);
+  file_->note(node == nullptr ? part_->table->source() : node->source(), std::move(hint));
+}
+
+Outcome<void> TomlTable::finish() {
+  for (const auto& part : file_->parts) {
+    for (const auto& [key, node] : *part->table) {
+      if (part->asked.contains(key.str())) continue;
+      file_->note(key.source(), fmt::format("nothing is known of the key '{}'", key.str()));
+    }
+  }
+  if (file_->first) return tl::unexpected{*file_->first};
+  return {};
+}
+
+}  // namespace armjig

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/error.hpp"
+
+namespace armjig {
+
+/// A table of a TOML file. Whoever reads it asks for all keys that may be there and then calls
+/// `finish`, which knows the first mistake: a value of the wrong type or out of range, a key that
+/// is missing, a key that nobody asked for. Until then wrong values read as if they were not there.
+class TomlTable {
+ public:
+  /// Problems: `kCannotRead`, `kMalformed`; they name path and line.
+  [[nodiscard]] static Outcome<TomlTable> read(const std::string& path);
+  /// The same from text in memory; `path` is for messages.
+  [[nodiscard]] static Outcome<TomlTable> parse(std::string_view text, std::string path);
+
+  /// Integers are numbers, too; those that are not finite are, if TOML says so (`nan`, `inf`).
+  [[nodiscard]] std::optional<double> number(std::string_view key);
+  [[nodiscard]] std::optional<std::int64_t> integer(std::string_view key, std::int64_t least,
+                                                    std::int64_t most);
+  [[nodiscard]] std::optional<bool> boolean(std::string_view key);
+  [[nodiscard]] std::optional<std::string> text(std::string_view key);
+  [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key);
+  /// The tables of `[[key]]`, in order; none if there are none.
+  [[nodiscard]] std::vector<TomlTable> tables(std::string_view key);
+
+  /// Notes that the value of `key` will not do, or that it is missing.
+  void complain(std::string_view key, std::string hint);
+
+  /// Of this table and of all that came out of it. Problems: `kMalformed`.
+  [[nodiscard]] Outcome<void> finish();
+
+ private:
+  struct File;
+  struct Part;
+  explicit TomlTable(std::shared_ptr<File> file, std::shared_ptr<Part> part);
+
+  std::shared_ptr<File> file_;
+  std::shared_ptr<Part> part_;
+};
+
+}  // namespace armjig

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/link/i2c_dev.hpp"
+
+#include <fcntl.h>
+#include <linux/i2c-dev.h>
+#include <linux/i2c.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "harness/link/descriptor.hpp"
+#include "harness/link/transaction_bus.hpp"
+
+namespace armjig {
+namespace {
+
+constexpr std::size_t kLongestMessage = 8192;  // of the kernel
+
+/// In the kernel's terms. It does not write to what is to be written.
+i2c_msg to_kernel(const BusMessage& message) {
+  i2c_msg out{};
+  out.addr = message.address.value;
+  const bool is_read = message.access == Access::kRead;
+  if (is_read) out.flags = I2C_M_RD;
+  out.len = static_cast<std::uint16_t>(is_read ? message.read.size() : message.write.size());
+  out.buf = reinterpret_cast<std::uint8_t*>(is_read ? message.read.data()
+                                                    : const_cast<std::byte*>(message.write.data()));
+  return out;
+}
+
+/// The kernel's i2c/fault-codes, as far as drivers keep to them.
+Result<Transfer> refusal_of(int error_number) {
+  switch (error_number) {
+    case ENXIO:
+    case EREMOTEIO:
+      return Transfer::kAddressRefused;
+    case EIO:
+      return Transfer::kByteRefused;
+    case EAGAIN:
+    case EBUSY:
+      return fail(ErrorCode::kBusy, error_number);
+    case ETIMEDOUT:
+      return fail(ErrorCode::kTimedOut, error_number);
+    case ENODEV:
+    case ESHUTDOWN:
+      return fail(ErrorCode::kDisconnected, error_number);
+    case EOPNOTSUPP:
+      return fail(ErrorCode::kUnsupported, error_number);
+    default:
+      return tl::unexpected{error_from_errno(error_number)};
+  }
+}
+
+class I2cDev final : public RealBus {
+ public:
+  explicit I2cDev(Descriptor descriptor) noexcept : descriptor_{std::move(descriptor)} {}
+
+  Result<Transfer> transfer(std::span<const BusMessage> messages) override {
+    const auto is_too_long = [](const BusMessage& message) {
+      return std::max(message.write.size(), message.read.size()) > kLongestMessage;
+    };
+    if (messages.empty() || messages.size() > I2C_RDWR_IOCTL_MAX_MSGS ||
+        std::ranges::any_of(messages, is_too_long)) {
+      return fail(ErrorCode::kBadValue);
+    }
+    std::vector<i2c_msg> parts;
+    for (const auto& message : messages) parts.push_back(to_kernel(message));
+    i2c_rdwr_ioctl_data request{parts.data(), static_cast<std::uint32_t>(parts.size())};
+    const int done = ::ioctl(descriptor_.value(), I2C_RDWR, &request);
+    if (done < 0) return refusal_of(errno);
+    // A driver that stops early without an error has had a byte refused.
+    return static_cast<std::size_t>(done) == messages.size() ? Transfer::kDone
+                                                             : Transfer::kByteRefused;
+  }
+
+ private:
+  Descriptor descriptor_;
+};
+
+auto problem_of_open(const std::string& path, int error_number) {
+  const auto error = error_from_errno(error_number);
+  switch (error.code) {
+    case ErrorCode::kNotFound:
+      return problem(error.code, path,
+                     "there is no such bus; 'i2cdetect -l' lists them, after 'modprobe i2c-dev'");
+    case ErrorCode::kNoPermission:
+      return problem(error.code, path,
+                     "'sudo usermod -aG i2c $USER' and a new login let you use I2C buses");
+    default:
+      return problem(error.code, path, "is it an I2C bus?");
+  }
+}
+
+}  // namespace
+
+Outcome<std::unique_ptr<BusPort>> open_i2c_dev(const std::string& path) {
+  Descriptor descriptor{::open(path.c_str(), O_RDWR | O_CLOEXEC)};
+  if (!descriptor.is_open()) return problem_of_open(path, errno);
+  unsigned long functions = 0;
+  if (::ioctl(descriptor.value(), I2C_FUNCS, &functions) < 0) {
+    return problem(ErrorCode::kUnsupported, path, "it is not an I2C bus; write i2c:/dev/i2c-N");
+  }
+  if ((functions & I2C_FUNC_I2C) == 0) {
+    return problem(ErrorCode::kUnsupported, path,
+                   "the adapter knows SMBus commands only, and no plain I2C transactions");
+  }
+  return std::make_unique<I2cDev>(std::move(descriptor));
+}
+
+}  // namespace armjig

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "harness/core/bytes.hpp"
+#include "harness/core/error.hpp"
+
+namespace armjig {
+
+/// A control transfer: the vendor's request to an interface.
+struct UsbRequest {
+  std::uint8_t request{};
+  std::uint16_t value{};
+  std::uint16_t index{};
+};
+
+/// Control transfers to one USB device. Errors: `kDisconnected` (pulled out), `kTimedOut`,
+/// `kUnsupported` (the device refuses the request), `kSystem` with libusb's number.
+class UsbControl {
+ public:
+  UsbControl() = default;
+  UsbControl(const UsbControl&) = delete;
+  UsbControl& operator=(const UsbControl&) = delete;
+  virtual ~UsbControl() = default;
+
+  /// Bytes that the device sent, at most as many as there is room for.
+  [[nodiscard]] virtual Result<std::size_t> read(UsbRequest request, std::span<std::byte> into) = 0;
+  /// Bytes that the device took.
+  [[nodiscard]] virtual Result<std::size_t> write(UsbRequest request, Bytes bytes) = 0;
+};
+
+/// The numbers by which a kind of device is told.
+struct UsbNumbers {
+  std::uint16_t vendor{};
+  std::uint16_t product{};
+};
+
+/// Opens the only device with one of these numbers, or that with a serial number if one is given.
+/// Problems: `kNotFound`, `kBadTarget` (several: names their serial numbers), `kNoPermission`,
+/// `kBusy`, `kSystem`; `where` is what the user wrote.
+[[nodiscard]] Outcome<std::unique_ptr<UsbControl>> open_usb_control(
+    std::span<const UsbNumbers> numbers, std::string_view serial_number, const std::string& where);
+
+}  // namespace armjig

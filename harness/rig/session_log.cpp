@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/rig/session_log.hpp"
+
+#include <fmt/core.h>
+
+#include <utility>
+#include <vector>
+
+#include "harness/capture/message_json.hpp"
+#include "harness/core/hex.hpp"
+
+namespace armjig {
+
+Outcome<std::unique_ptr<SessionPort>> LoggedSession::log(std::unique_ptr<SessionPort> port,
+                                                         const std::string& path,
+                                                         const DissectorEntry& device) {
+  std::ofstream file{path, std::ios::trunc};
+  file << fmt::format(R"({{"format":"golden-trace/1","device":"{}","title":"wire log"}})",
+                      device.device)
+       << '\n'
+       << std::flush;
+  if (!file) {
+    return problem(ErrorCode::kCannotWrite, path, "check that the folder exists and is writable");
+  }
+  return std::unique_ptr<SessionPort>{new LoggedSession{std::move(port), std::move(file), device}};
+}
+
+LoggedSession::LoggedSession(std::unique_ptr<SessionPort> port, std::ofstream file,
+                             const DissectorEntry& device)
+    : port_{std::move(port)}, file_{std::move(file)}, device_{device} {}
+
+Result<void> LoggedSession::connect(Instant deadline) {
+  const auto connected = port_->connect(deadline);
+  const bool is_refused = !connected && connected.error().code == ErrorCode::kRefused;
+  if (!connected && !is_refused) return connected;
+  ++connection_;
+  is_open_ = !is_refused;
+  dissector_ = device_.make();
+  file_ << fmt::format(R"({{"t_us":{},"dir":"connect","conn":{},"text":"{}"}})",
+                       microseconds(now()), connection_, is_refused ? "refused" : "ok")
+        << '\n'
+        << std::flush;
+  return connected;
+}
+
+Result<void> LoggedSession::send(Bytes segment) {
+  const auto sent = port_->send(segment);
+  if (sent) write_bytes(Direction::kToDevice, segment);
+  return sent;
+}
+
+Result<SessionPort::Received> LoggedSession::receive(std::span<std::byte> into, Instant deadline) {
+  const auto received = port_->receive(into, deadline);
+  if (!received) return received;
+  if (received->arrival == Arrival::kData) {
+    write_bytes(Direction::kFromDevice, into.first(received->size));
+  } else if (received->arrival == Arrival::kEnd) {
+    write_end("device-eof");
+  } else if (received->arrival == Arrival::kReset) {
+    write_end("device-reset");
+  }
+  return received;
+}
+
+void LoggedSession::half_close() {
+  port_->half_close();
+  if (is_open_) write_disconnect("client-half-close");
+}
+
+void LoggedSession::close() {
+  port_->close();
+  write_end("client-close");
+}
+
+void LoggedSession::reset() {
+  port_->reset();
+  write_end("client-reset");
+}
+
+void LoggedSession::write_end(std::string_view how) {
+  if (std::exchange(is_open_, false)) write_disconnect(how);
+}
+
+void LoggedSession::write_disconnect(std::string_view how) {
+  file_ << fmt::format(R"({{"t_us":{},"dir":"disconnect","conn":{},"text":"{}"}})",
+                       microseconds(now()), connection_, how)
+        << '\n'
+        << std::flush;
+}
+
+void LoggedSession::write_bytes(Direction direction, Bytes bytes) {
+  std::vector<Message> messages;
+  dissector_->feed(direction, now(), bytes, messages);
+  file_ << fmt::format(R"({{"t_us":{},"dir":"{}","conn":{},"hex":"{}")", microseconds(now()),
+                       to_string(direction), connection_, to_hex(bytes));
+  const char* separator = ",\"messages\":[";
+  for (const auto& message : messages) {
+    file_ << separator << to_json(message);
+    separator = ",";
+  }
+  file_ << (messages.empty() ? "}" : "]}") << '\n' << std::flush;
+}
+
+}  // namespace armjig

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/rig/session_guard.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "harness/rig/kinovazed_judge.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+
+/// Writes down what it is told; never answers.
+class Recorder final : public SessionPort {
+ public:
+  explicit Recorder(std::vector<std::string>& notes) : notes_{notes} {}
+
+  Result<void> connect(Instant /*deadline*/) override {
+    notes_.emplace_back("connect");
+    return {};
+  }
+  Result<void> send(Bytes segment) override {
+    std::string text;
+    for (const auto byte : segment) {
+      const auto c = static_cast<char>(byte);
+      if (c != '\r') text.push_back(c == '\n' ? ';' : c);
+    }
+    notes_.push_back(text);
+    return {};
+  }
+  Result<Received> receive(std::span<std::byte> /*into*/, Instant deadline) override {
+    now_ = deadline;
+    return Received{Arrival::kDeadline, 0};
+  }
+  void half_close() override { notes_.emplace_back("half-close"); }
+  void close() override { notes_.emplace_back("close"); }
+  void reset() override { notes_.emplace_back("reset"); }
+  [[nodiscard]] Instant now() const override { return now_; }
+
+ private:
+  std::vector<std::string>& notes_;
+  Instant now_{};
+};
+
+class SessionGuard : public ::testing::Test {
+ protected:
+  void open(Permissions permissions) {
+    port = std::make_unique<GuardedSession>(std::make_unique<Recorder>(notes),
+                                            kinovazed::make_judge(), permissions);
+    ASSERT_TRUE(port->connect({}));
+  }
+  Result<void> send(std::string_view text) { return port->send(std::as_bytes(std::span{text})); }
+
+  std::vector<std::string> notes;
+  std::unique_ptr<GuardedSession> port;
+};
+
+TEST_F(SessionGuard, WritesNothingOfWhatIsNotAllowed) {
+  open({});
+  EXPECT_TRUE(send("EStop\r\n"));
+  EXPECT_EQ(send("EStop\r\nRetract\r\n").error().code, ErrorCode::kForbidden);
+  EXPECT_EQ(port->last_refusal()->reason, "Retract needs --allow move");
+  EXPECT_THAT(notes, ElementsAre("connect", "EStop;"));
+}
+
+TEST_F(SessionGuard, StopsAMovingArmBeforeAnyEndOfTheConnection) {
+  open(Permissions::all());
+  EXPECT_TRUE(send("Retract\r\n"));
+  port->close();
+  EXPECT_THAT(notes, ElementsAre("connect", "Retract;", ";EStop;", "close"));
+  notes.clear();
+  ASSERT_TRUE(port->connect({}));
+  port->reset();
+  EXPECT_THAT(notes, ElementsAre("connect", ";EStop;", "reset"));
+  notes.clear();
+  ASSERT_TRUE(port->connect({}));
+  port.reset();
+  EXPECT_THAT(notes, ElementsAre("connect", ";EStop;", "close"));
+}
+
+TEST_F(SessionGuard, LetsAConnectionEndThatMovedNothing) {
+  open(Permissions::all());
+  EXPECT_TRUE(send("QuitEStop\r\n"));
+  port->half_close();
+  port->close();
+  EXPECT_THAT(notes, ElementsAre("connect", "QuitEStop;", "half-close", "close"));
+}
+
+TEST_F(SessionGuard, EndsTheHalfSentLineOfALostConnection) {
+  open({});
+  EXPECT_TRUE(send("      MoveJoy"));
+  port->close();
+  ASSERT_TRUE(port->connect({}));
+  EXPECT_THAT(notes, ElementsAre("connect", "      MoveJoy", "close", "connect", ";"));
+}
+
+}  // namespace
+}  // namespace armjig
