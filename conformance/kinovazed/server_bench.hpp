@@ -119,7 +119,7 @@ class ServerBench final : public Bench {
     kByHand,        ///< it lives on and serves nobody
   };
   void spoil(Recovery recovery);
-  /// Whether the server answers EStop; no finding yet.
+  /// Whether the server answers EStop; no finding yet. What came before is passed over.
   [[nodiscard]] bool answers();
   /// Connects, once, and tells whether EStop is answered; no finding yet.
   [[nodiscard]] bool is_served();

@@ -14,7 +14,7 @@ namespace armjig::kinovazed {
 /// A target so far away from the ready pose that the fastest arm needs more than a second.
 inline constexpr auto kFarObjective = "RunObjective:SuckDoor";
 /// The beat that shows a state of less than a second comes that long behind the command.
-inline constexpr Duration kBeforeBeat = std::chrono::milliseconds{350};
+inline constexpr Duration kBeforeBeat = std::chrono::milliseconds{420};
 
 /// From which start a case reaches a state by `enter`.
 [[nodiscard]] constexpr Start start_for(State state) noexcept {
@@ -48,7 +48,7 @@ void enter(ServerBench& server, State state);
 /// From retracted to poweredOff; the arm stays folded, so that initializing takes its time.
 void switch_off(ServerBench& server);
 
-/// A case that begins where its state can be entered.
+/// A case that begins where its state can be entered; with motion it is not quick.
 [[nodiscard]] constexpr Case in(State state, std::string_view requirement, std::string_view rule,
                                 void (*run)(Bench&), std::string_view variant = {}) noexcept {
   return {.requirement = requirement,
@@ -56,6 +56,7 @@ void switch_off(ServerBench& server);
           .rule = rule,
           .run = run,
           .hazard = hazard_of(state),
+          .tier = hazard_of(state) == Hazard::kMove ? Tier::kFull : Tier::kQuick,
           .start = start_for(state)};
 }
 

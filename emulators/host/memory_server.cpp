@@ -2,6 +2,7 @@
 #include "emulators/host/memory_server.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <map>
 #include <optional>
@@ -15,7 +16,14 @@ using Event = HostedServer::Event;
 
 /// The server, its time, and what has arrived at each client.
 struct Wire {
-  explicit Wire(std::unique_ptr<HostedServer> hosted) : server{std::move(hosted)} {}
+  /// The server looks for its arm before it listens; nobody shall have to wait for that.
+  explicit Wire(std::unique_ptr<HostedServer> hosted) : server{std::move(hosted)} {
+    constexpr auto kPatience = at(std::chrono::seconds{1});
+    for (auto next = server->next_event(); !server->is_listening() && next && *next <= kPatience;
+         next = server->next_event()) {
+      advance_to(*next);
+    }
+  }
 
   void advance_to(Instant time) {
     now = std::max(now, time);

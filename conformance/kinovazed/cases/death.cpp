@@ -147,6 +147,7 @@ constexpr Case dies(std::string_view requirement, std::string_view rule, void (*
           .rule = rule,
           .run = run,
           .hazard = Hazard::kCrash,
+          .tier = Tier::kFull,
           .start = kReady};
 }
 

@@ -171,7 +171,7 @@ void steering_move(ServerBench& server) {
 }
 
 void running_mode(ServerBench& server) {
-  server.wait_until_before_beat(kBeforeBeat + 100ms);
+  server.wait_until_before_beat(kBeforeBeat + 60ms);
   server.accept(kFarObjective);
   server.accept("SetJoystickMode:Rotation");
   server.expect_beat(5);
