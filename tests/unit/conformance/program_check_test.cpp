@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const ProgramCheckEntry& parol6_entry() { return program_checks().front(); }
+const ProgramCheckEntry& parol6_entry() {
+  return *std::ranges::find(program_checks(), "parol6", &ProgramCheckEntry::device);
+}
 
 std::unique_ptr<HostedStream> watched_arm(ProgramCheck& check) {
   return check.watch(make_hosted(parol6::Arm{}));
