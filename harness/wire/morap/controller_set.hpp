@@ -38,7 +38,8 @@ struct ControllerSet {
 
 /// From the kind to the checksum.
 inline constexpr std::size_t kSmallestSetSize = 11;
-inline constexpr std::size_t kLargestSetSize = kSmallestSetSize + std::size_t{3} * 4 * kMostCoefficients;
+inline constexpr std::size_t kLargestSetSize =
+    kSmallestSetSize + std::size_t{3} * 4 * kMostCoefficients;
 using SetBytes = BoundedBytes<kLargestSetSize>;
 
 /// Bytes of the set on the wire, checksum included. Requires counts of at most four.
