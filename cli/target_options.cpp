@@ -12,10 +12,10 @@ void add_target_options(CLI::App& app, TargetOptions& options) {
                  "where the device is: emulated:[?OPTION=VALUE&...], serial:PATH[,BAUD], "
                  "usb:VID:PID, pty:PATH or tcp:HOST:PORT")
       ->type_name("TARGET");
-  app.add_option(
-         "--allow", options.allow,
-         "what may be done to a device that is not emulated: state,move,home,grip,crash or all "
-         "(default: only look)")
+  app.add_option("--allow", options.allow,
+                 "what may be done to a device that is not emulated: "
+                 "state,move,home,grip,program,crash or all "
+                 "(default: only look)")
       ->type_name("LIST");
   app.add_option("--impair", options.impair,
                  "make the link bad, as in loss=0.1%,delay=normal(2ms,1ms),split=random,seed=7")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# find_package(armjig): targets armjig::wire, armjig::arm, armjig::motion, armjig::urdf, armjig::emulators,
-# armjig::capture, armjig::replay and,
-# unless the build left them out, armjig::harness, armjig::host, armjig::conformance.
+# find_package(armjig): targets armjig::wire, armjig::arm, armjig::motion, armjig::urdf,
+# armjig::emulators, armjig::capture, armjig::replay and, unless the build left them out,
+# armjig::harness, armjig::script, armjig::host, armjig::conformance.
 include(CMakeFindDependencyMacro)
 find_dependency(fmt)
 find_dependency(tl-expected)

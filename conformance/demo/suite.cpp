@@ -35,7 +35,7 @@ class MachineBench final : public StreamBench {
   }
   void bring_to(std::size_t /*start*/) override {
     send(encode(Operation::kHalt));
-    expect_state(State::kHalted);
+    (void)receive(100ms);  // what it answers is for the cases to judge
   }
   void measure_noise() override {}
   [[nodiscard]] Duration noise() const override { return {}; }

@@ -20,8 +20,6 @@ namespace armjig::parol6 {
 [[nodiscard]] std::span<const Requirement> demo_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> gripper_requirements() noexcept;
 
-[[nodiscard]] std::span<const Requirement> between_requirements() noexcept;
-
 [[nodiscard]] std::span<const Case> frame_cases() noexcept;
 [[nodiscard]] std::span<const Case> receive_cases() noexcept;
 [[nodiscard]] std::span<const Case> telemetry_cases() noexcept;

@@ -12,9 +12,10 @@ namespace armjig {
 Outcome<std::unique_ptr<SessionPort>> open_kinovazed_session(const Target& target) {
   auto server = kinovazed::make_server(target.options, target.text);
   if (!server) return tl::unexpected{server.error()};
-  kinovazed::SingleClient client{*std::move(server)};
+  using Client = kinovazed::SingleClient<kinovazed::DefectiveServer>;
+  Client client{*std::move(server)};
   const auto start = client.start();
-  return std::make_unique<MemorySession<kinovazed::SingleClient>>(std::move(client), start);
+  return std::make_unique<MemorySession<Client>>(std::move(client), start);
 }
 
 }  // namespace armjig

@@ -204,24 +204,27 @@ class SessionHost::Loop {
   }
 
   void forward() {
-    std::vector<PeerPointer> touched;
+    PeerPointer peer;  // of the event before: mostly there is only one
     for (const auto& event : server_->sent()) {
-      const auto found = peers_.find(event.connection);
-      if (found == peers_.end()) continue;
-      const auto peer = found->second;
+      if (!peer || peer->id != event.connection) {
+        if (peer) write_waiting(peer);
+        const auto found = peers_.find(event.connection);
+        peer = found == peers_.end() ? nullptr : found->second;
+      }
+      if (!peer) continue;
       if (event.kind == SessionEvent::Kind::kData) {
         peer->outbox.push(event.bytes);
-        if (touched.empty() || touched.back() != peer) touched.push_back(peer);
       } else {
         write_waiting(peer);
         end(peer, event.kind);
+        peer.reset();
       }
     }
     server_->clear_sent();
-    for (const auto& peer : touched) write_waiting(peer);
+    if (peer) write_waiting(peer);
     for (const auto& line : server_->take_log()) log_(line);
     // Whose bytes the server has read meanwhile may send on.
-    for (const auto& [id, peer] : peers_) read_when_ready(peer);
+    for (const auto& [id, each] : peers_) read_when_ready(each);
   }
 
   void end(const PeerPointer& peer, SessionEvent::Kind kind) {

@@ -70,8 +70,7 @@ bool Connections::write(Instant time, std::string_view text) {
     served_->has_reset = true;  // the answer to bytes that nobody wants
     return true;
   }
-  const auto bytes = std::as_bytes(std::span{text});
-  sent_.push_back({time, served_->id, SessionEvent::Kind::kData, {bytes.begin(), bytes.end()}});
+  add(time, served_->id, SessionEvent::Kind::kData, std::as_bytes(std::span{text}));
   return true;
 }
 
@@ -93,7 +92,16 @@ Connections::Client* Connections::find(ConnectionId id) noexcept {
 }
 
 void Connections::tell(Instant time, const Client& client, SessionEvent::Kind kind) {
-  if (!client.is_gone) sent_.push_back({time, client.id, kind, {}});
+  if (!client.is_gone) add(time, client.id, kind, {});
+}
+
+void Connections::add(Instant time, ConnectionId id, SessionEvent::Kind kind, Bytes bytes) {
+  if (sent_count_ == sent_.size()) sent_.emplace_back();
+  auto& event = sent_[sent_count_++];
+  event.time = time;
+  event.connection = id;
+  event.kind = kind;
+  event.bytes.assign(bytes.begin(), bytes.end());
 }
 
 }  // namespace armjig::kinovazed

@@ -58,8 +58,10 @@ class Connections {
   /// Ends all; those that wait are reset.
   void drop_all(Instant time);
 
-  [[nodiscard]] std::span<const ServerEvent> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
+  [[nodiscard]] std::span<const ServerEvent> sent() const noexcept {
+    return std::span{sent_}.first(sent_count_);
+  }
+  void clear_sent() noexcept { sent_count_ = 0; }
 
  private:
   struct Client {
@@ -72,11 +74,13 @@ class Connections {
   };
   [[nodiscard]] Client* find(ConnectionId id) noexcept;
   void tell(Instant time, const Client& client, SessionEvent::Kind kind);
+  void add(Instant time, ConnectionId id, SessionEvent::Kind kind, Bytes bytes);
 
   ConnectionId next_id_ = 0;
   std::optional<Client> served_;
   std::deque<Client> waiting_;
-  std::vector<ServerEvent> sent_;
+  std::vector<ServerEvent> sent_;  ///< and behind them some whose memory is used again
+  std::size_t sent_count_ = 0;
 };
 
 }  // namespace armjig::kinovazed

@@ -220,13 +220,13 @@ void Server::end_connection() {
 }
 
 /// A message joins the queue; the first one begins to leave.
-void Server::push(const EncodedLine& message) {
+void Server::push(ServerMessage message) {
   outbox_.push_back(message);
   if (outbox_.size() == 1) start_write();
 }
 
 void Server::start_write() {
-  const bool was_written = connections_.write(now_, outbox_.front().view());
+  const bool was_written = connections_.write(now_, encode(outbox_.front()).view());
   tasks_.push_back({Task::Kind::kWritten, was_written});
 }
 
@@ -239,7 +239,7 @@ void Server::on_written(bool was_written) {
 }
 
 void Server::say(Event event) {
-  if (is_connected_) tasks_.push_back({Task::Kind::kPush, false, encode(event)});
+  if (is_connected_) tasks_.push_back({Task::Kind::kPush, false, event});
 }
 
 void Server::say_heartbeat() {
@@ -247,7 +247,7 @@ void Server::say_heartbeat() {
   Heartbeat heartbeat{options_.machine.flag(state_)};
   if (worker_.is_arm_well()) heartbeat.flags |= beat::kConnected;
   if (is_initialized_) heartbeat.flags |= beat::kInitialized;
-  if (is_connected_) tasks_.push_back({Task::Kind::kPush, false, encode(heartbeat)});
+  if (is_connected_) tasks_.push_back({Task::Kind::kPush, false, heartbeat});
 }
 
 void Server::wait_for(Job job, Waiting why) {

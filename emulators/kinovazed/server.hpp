@@ -85,6 +85,9 @@ class Server {
     kEnded,  ///< nobody listens
   };
   [[nodiscard]] Life life() const noexcept;
+  [[nodiscard]] bool is_listening() const noexcept {
+    return life() == Life::kRunning || life() == Life::kHung;
+  }
   [[nodiscard]] State state() const noexcept { return state_; }
   /// When the server began to listen; none before.
   [[nodiscard]] std::optional<Instant> listening_since() const noexcept { return listening_since_; }
@@ -96,7 +99,7 @@ class Server {
     enum class Kind : std::uint8_t { kAccept, kRead, kPush, kWritten, kBeat };
     Kind kind{};
     bool was_written = false;  ///< of `kWritten`
-    EncodedLine message;       ///< of `kPush`
+    ServerMessage message;     ///< of `kPush`
   };
   /// Why the network thread stands still.
   enum class Waiting : std::uint8_t { kNo, kForTurn, kForJobs, kForBeat };
@@ -122,7 +125,7 @@ class Server {
   void arm_read();
   void serve_line(std::string_view line);
   void end_connection();
-  void push(const EncodedLine& message);
+  void push(ServerMessage message);
   void start_write();
   void on_written(bool was_written);
   void say(Event event);
@@ -160,7 +163,7 @@ class Server {
   bool is_connected_ = false;  ///< as the server believes
   bool is_read_armed_ = false;
   bool may_hold_line_ = false;  ///< behind the one that was served
-  std::deque<EncodedLine> outbox_;
+  std::deque<ServerMessage> outbox_;
   Instant beat_due_{};
 
   Waiting waiting_{};

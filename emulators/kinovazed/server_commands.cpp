@@ -61,6 +61,7 @@ void Server::serve_line(std::string_view line) {
 /// (kinovazed.time.turn).
 void Server::begin(const Command& command) {
   command_ = command;
+  if (worker_.is_free_at(now_)) return decide();
   wait_for({.kind = Job::Kind::kWait}, Waiting::kForTurn);
 }
 

@@ -71,6 +71,11 @@ class Worker {
   /// When something happens if nothing more is posted; none: never.
   [[nodiscard]] std::optional<Instant> next_event() const noexcept;
 
+  /// Whether a job that takes no time would be done at once.
+  [[nodiscard]] bool is_free_at(Instant time) const noexcept {
+    return !is_dead_ && !step_ && steps_.empty() && !job_ && jobs_.empty() && time < poll_due_;
+  }
+
   // Between the reports `kEvent` and `kEventOver`, in this order.
   void then_stop();
   void then_go_to(const Pose& target);

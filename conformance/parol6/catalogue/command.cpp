@@ -90,6 +90,10 @@ constexpr Requirement kRequirements[] = {
      "firmware", Profiles::kFirmware, "", Role::kDevice,
      "a pass is shorter than anything a host can time; what follows from the order has "
      "requirements of its own (parol6.telemetry.old-motion, parol6.loop.last-of-burst)"},
+    {"parol6.command.disabled-keeps-speeds", Level::kMust,
+     "While disabled, codes other than idle leave the reported speeds as they are, whatever speeds "
+     "come with them.",
+     "firmware"},
 };
 
 }  // namespace

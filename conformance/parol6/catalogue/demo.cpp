@@ -29,6 +29,11 @@ constexpr Requirement kRequirements[] = {
      "The maximum speeds of the demonstration, 6000, 4000, 3500, 3500, 3500, 7500, stay in force "
      "until power-off.",
      "firmware", Profiles::kFirmware},
+    {"parol6.demo.pauses-homing", Level::kMust, "Code 69 pauses homing and runs the demonstration.",
+     "firmware", Profiles::kFirmware},
+    {"parol6.demo.disabled-interrupted", Level::kMust,
+     "A demonstration of a disabled board stands still while another code comes.", "firmware",
+     Profiles::kFirmware},
 };
 
 }  // namespace

@@ -51,6 +51,9 @@ constexpr Requirement kRequirements[] = {
     {"parol6.frame.check-demanded", Level::kMust,
      "A frame whose check byte is not 212 is dropped, and the next good one is answered.",
      "document, check byte", Profiles::kDocumented, "parol6.frame.check-ignored"},
+    {"parol6.frame.prompt", Level::kMust,
+     "At 100 Hz most answers come before the next frame is due.",
+     "firmware: a frame is answered in the pass that reads it"},
 };
 
 }  // namespace

@@ -69,6 +69,8 @@ constexpr Requirement kRequirements[] = {
      "At the end of homing the counters are set to 10240, -32000, 57905, 0, 0, 32000.", "firmware"},
     {"parol6.home.rests", Level::kMust, "After homing all speeds are 0 and no joint moves.",
      "firmware"},
+    {"parol6.home.final-j5-j6", Level::kMust,
+     "J5 ends at 8900 from its switch and waits there for J6, which ends at 0.", "firmware"},
 };
 
 }  // namespace

@@ -234,8 +234,9 @@ TEST(ConformanceRun, GivesACaseTheSameRandomBytesWhateverRunsBesideIt) {
   NumberBench among_others;
   NumberBench otherwise;
   (void)run(alone, "n.too");
-  (void)run(among_others, "");
+  (void)run(among_others, "o");  // n.moves before it
   (void)run(otherwise, "n.too", {.seed = 2});
+  EXPECT_EQ(among_others.ran.size(), 2U);
   EXPECT_EQ(alone.randoms.back(), among_others.randoms.back());
   EXPECT_NE(alone.randoms.back(), otherwise.randoms.back());
 }

@@ -18,7 +18,7 @@ using Kind = DriveEvent::Kind;
 struct Jig {
   explicit Jig(ServerOptions server = {}, DriveOptions drive = {})
       : Jig{SingleClient{Server{ArmPort{BenchArm{}}, std::move(server)}}, drive} {}
-  Jig(SingleClient device, DriveOptions drive)
+  Jig(SingleClient<Server> device, DriveOptions drive)
       : port{device, device.start()}, client{port, drive} {}
 
   /// Connected, initialised, idle.
@@ -43,7 +43,7 @@ struct Jig {
   Server& server() { return port.device().server(); }
   State state() { return server().state(); }
 
-  MemorySession<SingleClient> port;
+  MemorySession<SingleClient<Server>> port;
   Client client;
   std::vector<DriveEvent> events;
 };
@@ -177,7 +177,7 @@ TEST(KinovaClient, LetsTheStickGoWhenNobodyRenewsIt) {
 }
 
 TEST(KinovaClient, LetsTheStickGoBeforeItLeaves) {
-  MemorySession<SingleClient> port{SingleClient{Server{ArmPort{BenchArm{}}}}, at(60ms)};
+  MemorySession<SingleClient<Server>> port{SingleClient{Server{ArmPort{BenchArm{}}}}, at(60ms)};
   {
     Client client{port, {.stick_watchdog = 0s}};
     ASSERT_TRUE(client.connect(client.now() + 2s));
