@@ -13,6 +13,7 @@
 #include "conformance/bench.hpp"
 #include "harness/core/bytes.hpp"
 #include "harness/link/bus_port.hpp"
+#include "harness/rig/bus_rig.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
@@ -21,7 +22,7 @@ namespace armjig {
 /// time. Once a case is decided, or the port has failed, nothing passes and no time goes by.
 class BusBench : public Bench {
  public:
-  BusBench(std::unique_ptr<BusPort> port, const DissectorEntry& device);
+  BusBench(BusRig rig, const DissectorEntry& device);
 
   enum class End : std::uint8_t {
     kStop,
@@ -41,7 +42,8 @@ class BusBench : public Bench {
   std::optional<std::vector<std::byte>> read(BusAddress address, std::size_t size,
                                              End end = End::kStop);
 
-  /// Reads a byte, lets `between` happen, and reads the rest; for devices in memory.
+  /// Reads a byte, lets `between` happen, and reads the rest. Skips the case on a bus that does
+  /// only whole transactions.
   template <class Between>
   std::vector<std::byte> read_around(BusAddress address, std::size_t size, Between between);
 
@@ -51,7 +53,7 @@ class BusBench : public Bench {
   /// Does at the device what its link cannot: an input, the power. Skips the case where nobody can.
   void touch(std::string_view input, std::int64_t value);
 
-  [[nodiscard]] Instant now() const override { return port_->now(); }
+  [[nodiscard]] Instant now() const override { return rig_.port().now(); }
   [[nodiscard]] const std::optional<Error>& error() const override { return error_; }
   [[nodiscard]] std::string last_exchange() const override;
 
@@ -65,9 +67,21 @@ class BusBench : public Bench {
   std::optional<T> taken(Result<T> result);
   bool connect(BusAddress address, BusPort::Access access);
   void finish(End end);
+  [[nodiscard]] bool is_whole_only() const { return !rig_.port().has_operations(); }
+  /// Does what was left open, and `last` behind it.
+  [[nodiscard]] std::optional<Transfer> transfer(const BusMessage& last);
+  Written write_whole(BusAddress address, Bytes bytes, End end);
+  std::optional<std::vector<std::byte>> read_whole(BusAddress address, std::size_t size);
   void remember(std::byte head, Bytes bytes);
 
-  std::unique_ptr<BusPort> port_;
+  /// A write that waits for what follows it in the same transaction.
+  struct Open {
+    BusAddress address;
+    std::vector<std::byte> bytes;
+  };
+
+  mutable BusRig rig_;  // its port tells the time without changing
+  std::vector<Open> open_;
   std::unique_ptr<Dissector> dissector_;
   std::deque<Message> exchange_;
   std::optional<Error> error_;
@@ -76,12 +90,17 @@ class BusBench : public Bench {
 template <class Between>
 std::vector<std::byte> BusBench::read_around(BusAddress address, std::size_t size,
                                              Between between) {
-  std::vector<std::byte> bytes;
-  if (is_deaf() || !connect(address, BusPort::Access::kRead)) return bytes;
+  std::vector<std::byte> bytes(size);
+  if (is_deaf()) return bytes;
+  if (is_whole_only()) {
+    skip("needs a bus that is led byte by byte");
+    return bytes;
+  }
+  if (!connect(address, BusPort::Access::kRead)) return bytes;
   for (std::size_t i = 0; i < size && !error_; ++i) {
     if (i == 1) between();
-    const auto byte = taken(port_->read(i + 1 < size ? Ack::kAck : Ack::kNack));
-    bytes.push_back(byte.value_or(std::byte{}));
+    const auto byte = taken(rig_.port().read(i + 1 < size ? Ack::kAck : Ack::kNack));
+    bytes[i] = byte.value_or(std::byte{});
   }
   finish(End::kStop);
   return bytes;

@@ -34,8 +34,8 @@ std::string name_of_selector(CommandId selector) {
 
 }  // namespace
 
-NodeBench::NodeBench(std::unique_ptr<BusPort> port, const Subject& subject)
-    : BusBench{std::move(port), dissector_entry()}, subject_{subject} {}
+NodeBench::NodeBench(BusRig rig, const Subject& subject)
+    : BusBench{std::move(rig), dissector_entry()}, subject_{subject} {}
 
 NodeBench::~NodeBench() { put_sets_back(); }
 
@@ -177,8 +177,17 @@ void NodeBench::expect_levels_at_ticks(std::initializer_list<int> levels) {
 // ---- States
 
 bool NodeBench::is_alive() {
-  const auto written = write(subject_.address, {});
-  return written.is_addressed && !error();
+  if (subject_.is_real) find_node();
+  return BusBench::read(subject_.address, 1).has_value() && !error();
+}
+
+/// The first one that answers, unless one was found already.
+void NodeBench::find_node() {
+  for (std::uint8_t node = 0; node <= kLastDocumentedNode && !is_found_ && !error(); ++node) {
+    const BusAddress address{node_address(node)};
+    is_found_ = BusBench::read(address, 1).has_value();
+    if (is_found_) subject_.address = address;
+  }
 }
 
 void NodeBench::measure_noise() {
@@ -203,7 +212,7 @@ void NodeBench::find_motor() {
 
 const Motor& NodeBench::motor() {
   if (subject_.motor != nullptr) return *subject_.motor;
-  skip("its motor is none of the known ones; say which in the target, as in ?motor=dcx22l");
+  skip("its controllers are those of no known motor; --allow program loads the stored ones");
   return motors().front();
 }
 
@@ -223,7 +232,7 @@ void NodeBench::bring_to(std::size_t start) {
   if (start == kListening) return;
   if (start == kFresh) return power_up(0);
   if (start == kFree) {
-    if (!subject_.is_free) power_up(1);
+    if (!subject_.is_real) power_up(1);
     prepare(kCalibrationUnknown);
     prepare(kDefaultControllers);
     settle();
@@ -234,12 +243,8 @@ void NodeBench::bring_to(std::size_t start) {
   // Before any mode is entered: what cases leave behind must never run.
   if (!kept_sets_[0].empty() || start == kProgrammable) prepare(kDefaultControllers);
   settle();
-  prepare(kPosition, 0.0F);
-  prepare(kSpeed, 0.0F);
-  prepare(kVoltage, 0.0F);
-  prepare(kCalibrationUnknown);
-  settle();
   rest();
+  if (start == kProgrammable) find_motor();
   if (start != kUncalibrated) prepare(kCalibrateZero);
 }
 

@@ -32,9 +32,9 @@ class NodeBench final : public BusBench {
   struct Subject {
     BusAddress address;
     const Motor* motor = nullptr;  ///< none: it is found out, if it is a known one
-    bool is_free = false;          ///< the shaft of a real node turns
+    bool is_real = false;          ///< the first of its bus that answers; its shaft turns
   };
-  NodeBench(std::unique_ptr<BusPort> port, const Subject& subject);
+  NodeBench(BusRig rig, const Subject& subject);
   NodeBench(const NodeBench&) = delete;
   NodeBench& operator=(const NodeBench&) = delete;
   ~NodeBench() override;
@@ -105,6 +105,7 @@ class NodeBench final : public BusBench {
 
  private:
   [[nodiscard]] std::string behind(std::string text) const;
+  void find_node();
   void find_motor();
   void keep_sets();
   void put_sets_back();
@@ -117,6 +118,7 @@ class NodeBench final : public BusBench {
   Subject subject_;
   std::string about_;
   Duration noise_{};
+  bool is_found_ = false;
   std::array<std::vector<std::byte>, 2> kept_sets_;  ///< as they were before the first case
   Instant next_tick_{};
   std::uint16_t rate_hz_ = 0;

@@ -89,24 +89,33 @@ class OptionReader {
   std::optional<Problem> problem_;
 };
 
-}  // namespace
-
-Outcome<std::unique_ptr<Bench>> open_node(const RigOptions& how) {
-  OptionReader options{how.target};
-  NodeBench::Subject subject{{node_address(options.node())}, options.motor()};
-  if (!how.target.is_emulated()) {
-    return problem(ErrorCode::kBadTarget, how.target.text,
-                   "the MORAP suite runs against emulated: only, so far");
-  }
-  if (subject.motor == nullptr) subject.motor = &motors().front();
-  NodeSetup setup{.eeprom = subject.motor->eeprom(options.node()), .profile = options.profile()};
+Outcome<std::unique_ptr<BusPort>> open_joint(const Target& target) {
+  OptionReader options{target};
+  const auto* motor = options.motor();
+  if (motor == nullptr) motor = &motors().front();
+  NodeSetup setup{.eeprom = motor->eeprom(options.node()), .profile = options.profile()};
   setup.plant = plant_of(setup.eeprom.motor, kInertia, kFriction);
   Defects defects;
   options.read_faults(setup, defects);
   if (options.first_problem()) return tl::unexpected{*options.first_problem()};
   JointBus bus{DefectiveNode{setup, std::move(defects)}};
-  return std::make_unique<NodeBench>(
-      std::make_unique<EmulatedBusPort<JointBus>>(std::move(bus), kClockPatience), subject);
+  return std::make_unique<EmulatedBusPort<JointBus>>(std::move(bus), kClockPatience);
+}
+
+}  // namespace
+
+Outcome<std::unique_ptr<Bench>> open_node(const RigOptions& how) {
+  OptionReader options{how.target};
+  NodeBench::Subject subject{{node_address(options.node())}, options.motor()};
+  if (how.target.is_emulated()) {
+    if (subject.motor == nullptr) subject.motor = &motors().front();
+  } else {
+    subject.is_real = true;
+  }
+  if (options.first_problem()) return tl::unexpected{*options.first_problem()};
+  auto rig = BusRig::open("morap", how, open_joint);
+  if (!rig) return tl::unexpected{rig.error()};
+  return std::make_unique<NodeBench>(*std::move(rig), subject);
 }
 
 }  // namespace armjig::morap

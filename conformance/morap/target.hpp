@@ -9,9 +9,10 @@
 
 namespace armjig::morap {
 
-/// A conversation with the node that a target names. Its options: `node=N` (2 if nothing is said)
-/// and `motor=dcx22l|dcx26l`; of `emulated:` also `profile=firmware|documented` and `fault=NAME`
-/// (see `add_fault`, several with `,`). Problems: `kBadTarget`, `kUnknownOption`, `kBadValue`.
+/// A conversation with a node. Options of `emulated:` are `node=N` (2 if nothing is said),
+/// `motor=dcx22l|dcx26l`, `profile=firmware|documented` and `fault=NAME` (see `add_fault`, several
+/// with `,`); of another bus it is the first node that answers. Problems: those of `BusRig::open`,
+/// `kUnknownOption`, `kBadValue`.
 [[nodiscard]] Outcome<std::unique_ptr<Bench>> open_node(const RigOptions& how);
 
 }  // namespace armjig::morap

@@ -83,6 +83,7 @@ void without_stop(NodeBench& node) {
 }
 
 void restart_cuts(NodeBench& node) {
+  node.send(kPosition, 0.0F);
   node.send_bytes("01 CD CC", BusBench::End::kOpen);
   node.send_bytes("4C 3E");  // would complete it, and is no command
   node.expect_bytes(kReadPositionReference, "00 00 00 00");
