@@ -92,9 +92,10 @@ void runs_with_calibration(NodeBench& node) {
   node.send(kDisable);
 }
 
-void disable_unlatches(NodeBench& node) {
+template <CommandId end>
+void unlatches(NodeBench& node) {
   node.send(kVoltage, 0.0F);
-  node.send(kDisable);
+  node.send(end);
   node.send(kCalibrateZero);
   node.expect_status(MotorStatus::kDisabled);
 }
@@ -249,7 +250,9 @@ constexpr Case kCases[] = {
           on<runs_with_calibration<kDirectVoltage>>, kUncalibrated),
     state("morap.status.runs-with-torque", "0 N m, then 16.", on<runs_with_calibration<kTorque>>,
           kUncalibrated),
-    state("morap.status.disable-unlatches", "0 V, 0, 16.", on<disable_unlatches>, kUncalibrated),
+    state("morap.status.disable-unlatches", "0 V, 0, 16.", on<unlatches<kDisable>>, kUncalibrated),
+    state("morap.status.forgetting-unlatches", "0 V, 31, 16.", on<unlatches<kCalibrationUnknown>>,
+          kUncalibrated),
     state("morap.status.calibration-while-enabled", "0 V, 16, 17, on a held shaft.",
           on<calibration_while_enabled>, kFresh),
     state("morap.status.over-reading", "0 V, then all readings.", on<over_reading>, kCalibrated),
