@@ -292,10 +292,19 @@ void BoardBench::walk_back() {
   act(idle());
 }
 
+/// J6 rests at its switch, where its first seek could not be seen.
+void BoardBench::leave_switch() {
+  Speeds speeds{};
+  speeds.back() = 1500;
+  keep_asking(jog(speeds), 700ms);
+  act(idle());
+}
+
 /// A 100 only once, then idle frames: a 100 that is held homes again and again. Homes once even if
 /// the arm is homed, for cases look at how it went.
 void BoardBench::home() {
   if (homing_log_.empty() || !is_homed(ask(idle()))) {
+    leave_switch();
     homing_log_ = {ask(idle())};
     act(with_code(100));
     const auto finished = ask_until(

@@ -125,6 +125,7 @@ class BoardBench final : public StreamBench {
   void put_back_surroundings();
   void enable();
   void walk_back();
+  void leave_switch();
   void home();
   void walk_to_standby();
   [[nodiscard]] std::string behind(std::string text) const;

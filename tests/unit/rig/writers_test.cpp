@@ -111,6 +111,7 @@ const std::vector<Step>& steps() {
         {"cli/server_stream.cpp", "for those who only listen"},
         {"cli/target_options.cpp", "for every subcommand that has --target"},
         {"conformance/demo/suite.cpp", "for `armjig conformance demo`"},
+        {"conformance/morap/target.cpp", "for `armjig conformance morap`"},
         {"conformance/parol6/suite.cpp", "for `armjig conformance parol6`"}}},
       {"writing to a port",
        R"((\.|->)write\s*\()",
