@@ -24,7 +24,7 @@ enum class Hazard : std::uint8_t {
   kHome,  ///< moves far, to switches that have to work
   kGrip,
   kProgram,  ///< changes parameters that outlast the program
-  kCrash,  ///< ends or hangs the device's program; somebody may have to start it again
+  kCrash,    ///< ends or hangs the device's program; somebody may have to start it again
 };
 inline constexpr std::size_t kHazardCount = 7;
 

@@ -247,8 +247,8 @@ void teleport(BoardBench& board) {
   expect_still(board, {rest, board.ask(idle())});
 }
 
-/// Whether frames of one write came to the board as one. A link may cut them, and USB does: its next
-/// packet comes 50 us later, time enough for passes in between.
+/// Whether frames of one write came to the board as one. A link may cut them, and USB does: its
+/// next packet comes 50 us later, time enough for passes in between.
 bool came_together(BoardBench& board, const std::vector<Answer>& answers) {
   constexpr int kTwentyMicroseconds = 14;
   if (answers.back().timing <= kTwentyMicroseconds) return true;

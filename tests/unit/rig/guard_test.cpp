@@ -53,7 +53,8 @@ TEST(Permissions, WhatIsNoPermissionIsNamed) {
     const auto permissions = parse_permissions(text);
     ASSERT_FALSE(permissions) << text;
     EXPECT_EQ(permissions.error().code, ErrorCode::kBadValue);
-    EXPECT_THAT(describe(permissions.error()), HasSubstr("state, move, home, grip, program, crash"));
+    EXPECT_THAT(describe(permissions.error()),
+                HasSubstr("state, move, home, grip, program, crash"));
   }
 }
 

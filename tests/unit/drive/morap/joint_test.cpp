@@ -41,7 +41,8 @@ class MorapDrive : public testing::Test {
 };
 
 TEST_F(MorapDrive, ScanFindsWhoIsThere) {
-  EXPECT_THAT(master_.scan().addresses, ElementsAre(BusAddress{0x11}, BusAddress{0x12}, BusAddress{0x19}));
+  EXPECT_THAT(master_.scan().addresses,
+              ElementsAre(BusAddress{0x11}, BusAddress{0x12}, BusAddress{0x19}));
 }
 
 TEST_F(MorapDrive, DrivesAJoint) {
