@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@ namespace armjig {
 namespace {
 
 constexpr std::size_t kRemembered = 4;
+/// The guard of an arm that moves wants a sign of life twice a second.
+constexpr Duration kLongestWait = std::chrono::milliseconds{200};
 
 }  // namespace
 
@@ -58,10 +61,11 @@ void StreamBench::touch(std::string_view input, std::int64_t value) {
   skip(fmt::format("needs a hand at the device, to set {}", input));
 }
 
-/// Reads once.
+/// Reads once, and for a moment only.
 void StreamBench::read_until(Instant deadline) {
   std::array<std::byte, 4096> buffer;
-  const auto size = rig_.port().read(buffer, deadline);
+  const auto size = rig_.port().read(buffer, std::min(deadline, now() + kLongestWait));
+  skip_if_stopped();
   if (!size) {
     error_ = size.error();
     return;
@@ -72,6 +76,12 @@ void StreamBench::read_until(Instant deadline) {
     remember(message);
     arrived_.push_back(std::move(message));
   }
+}
+
+/// What a board shows that was stopped in the middle of a case says nothing about it.
+void StreamBench::skip_if_stopped() {
+  if (!rig_.is_unsupervised() || std::exchange(knows_it_is_stopped_, true)) return;
+  skip(rig_.last_refusal()->reason);
 }
 
 void StreamBench::remember(const Message& message) {

@@ -47,6 +47,7 @@ class StreamBench : public Bench {
  private:
   [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over(); }
   void read_until(Instant deadline);
+  void skip_if_stopped();
   void remember(const Message& message);
 
   Rig rig_;
@@ -54,6 +55,7 @@ class StreamBench : public Bench {
   std::deque<Message> arrived_;
   std::deque<Message> exchange_;
   std::optional<Error> error_;
+  bool knows_it_is_stopped_ = false;
 };
 
 }  // namespace armjig

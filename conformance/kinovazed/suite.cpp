@@ -22,7 +22,7 @@ constexpr std::array kStarts{
 };
 
 Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
-  auto source = open_server(how, hosted_server("kinovazed").open);
+  auto source = open_server("kinovazed", how, hosted_server("kinovazed").open);
   if (!source) return tl::unexpected{source.error()};
   auto bench = std::make_unique<ServerBench>(*std::move(source));
   if (const auto begun = bench->begin_session(); !begun) {

@@ -6,8 +6,6 @@
 namespace armjig::kinovazed {
 namespace {
 
-constexpr float kNear = 0.05F;
-constexpr float kNearAngle = 0.25F;
 constexpr float kStill = 1e-5F;
 constexpr float kRightAngle = 1.5708F;
 

@@ -88,7 +88,7 @@ GuardedStream::~GuardedStream() {
 
 Result<void> GuardedStream::write(Bytes bytes) {
   if (auto taken = take_in(now()); !taken) return taken;
-  report_life();
+  report_life(Supervisor::Motion::kPossible);
   if (auto in_step = fall_into_step(); !in_step) return in_step;
   if (auto refusal = judge_->judge(bytes, permissions_)) {
     if (is_unsupervised_ && !permissions_.allow(refusal->hazard)) refusal->reason = kUnsupervised;
@@ -103,6 +103,7 @@ Result<void> GuardedStream::write(Bytes bytes) {
 }
 
 Result<std::size_t> GuardedStream::read(std::span<std::byte> into, Instant deadline) {
+  report_life(motion());
   if (unread_.empty()) {
     if (auto taken = take_in(deadline); !taken) return tl::unexpected{taken.error()};
     report_motion();
@@ -156,10 +157,15 @@ Result<void> GuardedStream::fall_into_step() {
   return written;
 }
 
-/// Before a write. Without its supervisor the arm may not move any more.
-void GuardedStream::report_life() {
+Supervisor::Motion GuardedStream::motion() const {
+  return judge_->may_be_moving() ? Supervisor::Motion::kPossible : Supervisor::Motion::kNone;
+}
+
+/// Before a write, which may move the arm, and a read, which does not. Without its supervisor the
+/// arm may not move any more.
+void GuardedStream::report_life(Supervisor::Motion motion) {
   if (!supervisor_ || is_unsupervised_) return;
-  told_motion_ = Supervisor::Motion::kPossible;
+  told_motion_ = motion;
   if (supervisor_->tell(told_motion_)) return;
   is_unsupervised_ = true;
   permissions_.withdraw_motion();
@@ -174,10 +180,8 @@ void GuardedStream::report_motion() {
   if (!std::ranges::equal(stop, told_stop_) && supervisor_->tell_stop(stop)) {
     told_stop_.assign(stop.begin(), stop.end());
   }
-  const auto motion =
-      judge_->may_be_moving() ? Supervisor::Motion::kPossible : Supervisor::Motion::kNone;
-  // If it is gone already, the next write will find out.
-  if (motion != told_motion_ && supervisor_->tell(motion)) told_motion_ = motion;
+  // If it is gone already, the next call will find out.
+  if (motion() != told_motion_ && supervisor_->tell(motion())) told_motion_ = motion();
 }
 
 /// Nothing can be reported from here, so errors of the port end it.

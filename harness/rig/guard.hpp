@@ -124,7 +124,8 @@ class GuardedStream final : public StreamPort {
       std::unique_ptr<StreamPort> port, std::unique_ptr<Judge> judge, Permissions permissions);
   ~GuardedStream() override;
 
-  /// While the arm may be moving, at least two writes a second are due, or the supervisor stops it.
+  /// While the arm may be moving, at least two calls a second of this or `read` are due, or the
+  /// supervisor stops it.
   Result<void> write(Bytes bytes) override;
   Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override;
   [[nodiscard]] Instant now() const override { return port_->now(); }
@@ -133,6 +134,9 @@ class GuardedStream final : public StreamPort {
   /// Why it last refused a write or stopped the arm; none if it never did.
   [[nodiscard]] const std::optional<Refusal>& last_refusal() const noexcept { return refusal_; }
 
+  /// The supervisor has stopped the arm or was ended; `last_refusal` says so.
+  [[nodiscard]] bool is_unsupervised() const noexcept { return is_unsupervised_; }
+
  private:
   GuardedStream(std::unique_ptr<StreamPort> port, std::unique_ptr<Judge> judge,
                 Permissions permissions, std::optional<Supervisor> supervisor);
@@ -140,7 +144,8 @@ class GuardedStream final : public StreamPort {
   [[nodiscard]] Result<void> receive(Instant deadline);
   [[nodiscard]] Result<void> put(Bytes bytes);
   [[nodiscard]] Result<void> fall_into_step();
-  void report_life();
+  [[nodiscard]] Supervisor::Motion motion() const;
+  void report_life(Supervisor::Motion motion);
   void report_motion();
   void stop();
 

@@ -64,6 +64,8 @@ std::optional<Refusal> Rig::last_refusal() const {
   return guard_ == nullptr ? std::nullopt : guard_->last_refusal();
 }
 
+bool Rig::is_unsupervised() const { return guard_ != nullptr && guard_->is_unsupervised(); }
+
 std::optional<ImpairmentStatistics> Rig::impairments() const {
   if (impaired_ == nullptr) return std::nullopt;
   return impaired_->statistics();

@@ -53,6 +53,9 @@ class Rig {
   /// Why the guard last refused a write or stopped the arm; none if it never did.
   [[nodiscard]] std::optional<Refusal> last_refusal() const;
 
+  /// The arm was stopped because this program gave no sign of life, and may not move any more.
+  [[nodiscard]] bool is_unsupervised() const;
+
   /// What the impairments did; none if there are none.
   [[nodiscard]] std::optional<ImpairmentStatistics> impairments() const;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "harness/core/error.hpp"
 #include "harness/link/session_source.hpp"
@@ -12,10 +13,12 @@ namespace armjig {
 /// Makes an emulated server from the target's options; as `OpenEmulated`.
 using OpenEmulatedServer = Outcome<std::unique_ptr<SessionSource>> (*)(const Target& target);
 
-/// A server on the jig: `emulated:` or `tcp:HOST:PORT`, impaired if the options say so. Nothing
-/// stands between its users and a real server: they have to ask for permission by themselves.
-/// Problems: `kBadTarget` for other targets, `kUnsupported` for a wire log.
-[[nodiscard]] Outcome<std::unique_ptr<SessionSource>> open_server(const RigOptions& options,
+/// A server on the jig for several clients at once: `emulated:` or `tcp:HOST:PORT`, each connection
+/// judged unless it is emulated (what is not permitted fails with `kForbidden`), and impaired if
+/// the options say so. `device` must be one that this room knows. Problems: `kBadTarget` for other
+/// targets, `kUnsupported` for a wire log.
+[[nodiscard]] Outcome<std::unique_ptr<SessionSource>> open_server(std::string_view device,
+                                                                  const RigOptions& options,
                                                                   OpenEmulatedServer open_emulated);
 
 }  // namespace armjig
