@@ -44,9 +44,20 @@ struct Stop {
   }
 };
 
+/// The other one may have heard nothing for a while for want of processor time; that is no reason
+/// yet to give it up.
 bool say(const Descriptor& socket, const char* message, std::size_t size) noexcept {
-  return ::send(socket.value(), message, size, MSG_NOSIGNAL | MSG_DONTWAIT) ==
-         static_cast<ssize_t>(size);
+  constexpr int kPatienceMs = 200;
+  const auto sent = [&] {
+    return ::send(socket.value(), message, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  };
+  auto result = sent();
+  if (result < 0 && errno == EAGAIN) {
+    pollfd ready{.fd = socket.value(), .events = POLLOUT, .revents = 0};
+    ::poll(&ready, 1, kPatienceMs);
+    result = sent();
+  }
+  return result == static_cast<ssize_t>(size);
 }
 
 // From here to `supervise`: only what is safe in a process that was forked, which is system calls.
