@@ -34,7 +34,6 @@ class JudgedSession final : public SessionPort {
   void close() override { port_->close(); }
   void reset() override { port_->reset(); }
   [[nodiscard]] Instant now() const override { return port_->now(); }
-  [[nodiscard]] std::optional<int> descriptor() const override { return port_->descriptor(); }
 
  private:
   std::unique_ptr<SessionPort> port_;
