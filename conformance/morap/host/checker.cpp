@@ -89,7 +89,8 @@ class HostChecker final : public ProgramChecker {
   /// `name` is what stands behind `morap.host.`.
   void complain(std::string_view name, std::string what) {
     for (const auto& requirement : host_requirements()) {
-      if (requirement.id.substr(kPrefix.size()) == name) add(now_, requirement.id, std::move(what));
+      if (requirement.id.substr(kPrefix.size()) != name) continue;
+      return add(now_, requirement.id, std::move(what));
     }
   }
 

@@ -12,6 +12,8 @@ using namespace std::chrono_literals;
 
 bool is_beat(const Saying& saying) { return saying.text.starts_with(kHeartbeatName); }
 
+// In a template the check does not see that they are moved.
+// NOLINTBEGIN(performance-unnecessary-value-param)
 /// A wrong voice: `change` gets every message.
 template <class Change>
 Quirk voice(std::string name, std::string section, Change change) {
@@ -25,6 +27,7 @@ Quirk ears(std::string name, std::string section, Change change) {
           .section = std::move(section),
           .hear = [change](std::string& segment, QuirkMemory&, State) { change(segment); }};
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 void replace_all(std::string& text, std::string_view what, std::string_view with) {
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size())) {
