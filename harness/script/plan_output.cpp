@@ -54,12 +54,11 @@ struct Leader {
 };
 
 Leader leader_of(const JointSteps& from, const JointSteps& to) {
-  Leader leader;
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    const double way = parol6::degrees_of(j, to[j] - from[j]);
-    if (std::abs(way) > std::abs(leader.degrees)) leader = {j, way};
-  }
-  return leader;
+  std::array<double, kJointCount> ways{};
+  for (std::size_t j = 0; j < kJointCount; ++j) ways[j] = parol6::degrees_of(j, to[j] - from[j]);
+  // Not a loop that keeps the longest so far: Clang 19.1.7 unrolls that one wrongly.
+  const auto longest = std::ranges::max_element(ways, {}, [](double way) { return std::abs(way); });
+  return {static_cast<std::size_t>(longest - ways.begin()), *longest};
 }
 
 std::string_view law_of(const parol6::Plan& plan) noexcept {
