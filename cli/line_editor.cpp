@@ -83,6 +83,9 @@ class LineEditor::Editor {
     meanwhile_ = &meanwhile;
     is_dropped_ = false;
     int size = 0;
+    // libedit shows the prompt first, and what is typed until then would still be the terminal's:
+    // a Ctrl-D that follows the prompt at once would be lost.
+    ::el_set(line_, EL_PREP_TERM, 1);
     const char* const text = ::el_gets(line_, &size);
     meanwhile_ = nullptr;
     if (text == nullptr || size <= 0) {

@@ -77,6 +77,7 @@ class Terminal {
   int wait() {
     while (read_more()) {
     }
+    if (!has_ended()) ::kill(pid_, SIGKILL);
     int status = 0;
     ::waitpid(std::exchange(pid_, -1), &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
@@ -91,6 +92,12 @@ class Terminal {
     const auto size = ::read(master_.value(), buffer.data(), buffer.size());
     if (size > 0) shown_.append(buffer.data(), static_cast<std::size_t>(size));
     return size > 0;
+  }
+
+  /// Nobody has the terminal open any more.
+  bool has_ended() const {
+    pollfd ready{.fd = master_.value(), .events = 0, .revents = 0};
+    return ::poll(&ready, 1, 0) == 1 && (ready.revents & POLLHUP) != 0;
   }
 
   pid_t pid_ = -1;
