@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tl/expected.hpp>
 #include <utility>
 
 #include "cli/command.hpp"
@@ -134,22 +135,29 @@ Halt refused(const script::Diagnostic& diagnostic, const std::string& file) {
   return {Exit::kUsage, {}};
 }
 
-/// Whether all of it can be done, from there. A long loop repeats itself: its first two passes
-/// say it all.
-std::optional<Halt> check_whole(const script::Program& program, Planning planning,
-                                const std::string& file) {
+/// What it does, if all of it can be done from there. A long loop repeats itself: its first two
+/// passes say it all.
+tl::expected<script::Schedule, Halt> check_whole(const script::Program& program, Planning planning,
+                                                 const std::string& file) {
   for (const auto& diagnostic : script::check(program)) {
-    if (diagnostic.severity == script::Severity::kError) return refused(diagnostic, file);
+    if (diagnostic.severity != script::Severity::kError) continue;
+    return tl::unexpected{refused(diagnostic, file)};
   }
   planning.settings.passes = std::min<std::uint64_t>(planning.settings.passes, 2);
-  const auto schedule = script::schedule(program, planning.settings, planning.start);
-  if (!schedule) return refused(schedule.error(), file);
-  for (const auto& diagnostic : script::check(program, *schedule)) {
+  auto schedule = script::schedule(program, planning.settings, planning.start);
+  if (!schedule) return tl::unexpected{refused(schedule.error(), file)};
+  // The commander finds out on the way; nothing of that is sent here.
+  if (schedule->stop && program.dialect == script::Dialect::kCommander) {
+    return tl::unexpected{refused(*schedule->stop, file)};
+  }
+  return *std::move(schedule);
+}
+
+void print_warnings(const script::Program& program, const script::Schedule& schedule,
+                    const std::string& file) {
+  for (const auto& diagnostic : script::check(program, schedule)) {
     if (diagnostic.severity != script::Severity::kNote) print_diagnostic(diagnostic, file);
   }
-  // The commander finds out on the way; nothing of that is sent here.
-  const bool is_unfit = schedule->stop && program.dialect == script::Dialect::kCommander;
-  return is_unfit ? std::optional{Halt{Exit::kUsage, {}}} : std::nullopt;
 }
 
 /// Whether the user agreed to what it does, before anything is sent.
@@ -178,7 +186,10 @@ std::optional<Halt> prepare(Session& session, const script::Program& program, Pl
     return Halt{Exit::kRig, "the arm is not homed: --home homes it first, --unhomed goes without"};
   }
   planning.start = session.telemetry().position;
-  return check_whole(program, planning, options.script.file);
+  const auto schedule = check_whole(program, planning, options.script.file);
+  if (!schedule) return schedule.error();
+  print_warnings(program, *schedule, options.script.file);
+  return std::nullopt;
 }
 
 Outcome<void> write_plots(const script::ProgramRun& run, const std::string& folder) {
@@ -226,7 +237,9 @@ Exit run(const Options& options) {
   if (options.is_unhomed) planning->settings.planner.limits = parol6::LimitCheck::kIgnored;
   const auto program = read_script(options.script);
   if (!program) return program.error();
-  if (const auto halt = check_whole(*program, *planning, options.script.file)) return halt->exit;
+  if (const auto checked = check_whole(*program, *planning, options.script.file); !checked) {
+    return checked.error().exit;
+  }
   const auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
   if (const auto halt = check_permissions(*program, *how, options.must_home)) {

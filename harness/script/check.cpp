@@ -39,13 +39,17 @@ class GripperWatch {
       waited_ += delay->seconds;
       return std::nullopt;
     }
-    const bool is_move = std::holds_alternative<parol6::Move>(statement.command);
-    const bool is_gripper = std::holds_alternative<GripperMove>(statement.command) ||
-                            std::holds_alternative<GripperCalibration>(statement.command);
-    std::optional<Diagnostic> found;
-    if (is_move || is_gripper) found = miss(statement.place);
-    if (is_gripper) begin(statement.command);
+    if (!needs_gripper(statement)) return std::nullopt;
+    auto found = miss(statement.place);
+    if (!std::holds_alternative<parol6::Move>(statement.command)) begin(statement.command);
     return found;
+  }
+
+  /// Whether the gripper should be at rest when this begins.
+  static bool needs_gripper(const Statement& statement) {
+    return std::holds_alternative<parol6::Move>(statement.command) ||
+           std::holds_alternative<GripperMove>(statement.command) ||
+           std::holds_alternative<GripperCalibration>(statement.command);
   }
 
  private:
@@ -73,6 +77,20 @@ class GripperWatch {
   Busy busy_ = Busy::kNo;
   double waited_ = 0;
 };
+
+/// The same of a program that begins anew, where its next pass first needs the gripper.
+std::optional<Diagnostic> pass_again(GripperWatch& gripper, const Program& program) {
+  const auto is_loop = [](const Statement& statement) {
+    return std::holds_alternative<Loop>(statement.command);
+  };
+  if (std::ranges::none_of(program.statements, is_loop)) return std::nullopt;
+  for (const auto& statement : program.statements) {
+    auto found = gripper.pass(statement);
+    if (found) found->text += ", on the way from Loop";
+    if (found || GripperWatch::needs_gripper(statement)) return found;
+  }
+  return std::nullopt;
+}
 
 std::optional<Diagnostic> check_flaw(const Statement& statement) {
   const auto* const flaw = std::get_if<Flaw>(&statement.command);
@@ -116,6 +134,7 @@ std::vector<Diagnostic> check(const Program& program) {
       found.push_back({Severity::kWarning, statement.place, std::move(text)});
     }
   }
+  add(pass_again(gripper, program));
   add(check_reach(program));
   sort_by_place(found);
   return found;

@@ -9,9 +9,12 @@ namespace armjig::script {
 namespace {
 
 using test::program_of;
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 std::vector<std::string> said(std::string_view lines, Dialect dialect = Dialect::kDocumented) {
   std::vector<std::string> texts;
@@ -35,6 +38,15 @@ TEST(Check, FindsAGripperThatIsNotWaitedFor) {
   EXPECT_THAT(said("Gripper_cal()\nDelay(2)\nGripper(1, 2, 300)"),
               ElementsAre(HasSubstr("p:4:1: warning: the gripper's calibration takes 4 s, and is "
                                     "given 2.00")));
+}
+
+TEST(Check, FindsAGripperThatIsNotWaitedForFromOnePassToTheNext) {
+  const auto is_found = Contains(AllOf(HasSubstr("p:2:1: warning: the gripper is not waited for"),
+                                       HasSubstr("on the way from Loop")));
+  const std::string pass = "MoveJoint(0, -90, 180, 0, 0, 180)\nGripper(1, 2, 300)\n";
+  EXPECT_THAT(said(pass + "Loop()"), is_found);
+  EXPECT_THAT(said(pass + "Delay(1)\nLoop()"), Not(is_found));
+  EXPECT_THAT(said(pass), Not(is_found));
 }
 
 TEST(Check, FindsArgumentsThatDoNothing) {
