@@ -54,7 +54,7 @@ void steer(benchmark::State& state) {
     server.clear_sent();
     ++seconds;
   }
-  state.counters["times_real"] =
+  state.counters["times_real_time"] =
       benchmark::Counter(static_cast<double>(seconds), benchmark::Counter::kIsRate);
 }
 BENCHMARK(steer<BenchArm>);
