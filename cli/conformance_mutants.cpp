@@ -31,7 +31,7 @@ struct Options {
 
 Exit list_mutants(const MutantsEntry& entry, const std::string& filter) {
   bool has_any = false;
-  for (const auto& mutant : entry.all()) {
+  for (const auto& mutant : mutants_of(entry)) {
     if (mutant.name.find(filter) == std::string::npos) continue;
     has_any = true;
     fmt::print("{:<40} {}{}{}\n", mutant.name, mutant.section,

@@ -88,9 +88,12 @@ void in_parallel(unsigned threads, std::size_t count, Work work) {
   run();
 }
 
-bool is_hinted(const Case& one, std::span<const std::string_view> hints) {
-  return std::ranges::any_of(
-      hints, [&](std::string_view hint) { return one.requirement.starts_with(hint); });
+bool is_hinted(const Case& one, std::span<const SectionHints> hints, std::string_view section) {
+  const auto found = std::ranges::find(hints, section, &SectionHints::section);
+  if (found == hints.end()) return false;
+  return std::ranges::any_of(found->requirements, [&](std::string_view hint) {
+    return !hint.empty() && one.requirement.starts_with(hint);
+  });
 }
 
 class Mutation {
@@ -100,7 +103,7 @@ class Mutation {
 
   Outcome<MutationResult> run() {
     if (auto tried = try_sound(); !tried) return tl::unexpected{tried.error()};
-    for (auto& mutant : entry_.all()) {
+    for (auto& mutant : mutants_of(entry_)) {
       if (mutant.name.find(options_.filter) == std::string::npos) continue;
       result_.fates.push_back({std::move(mutant)});
     }
@@ -149,8 +152,9 @@ class Mutation {
 
   void try_section(const std::vector<MutantFate*>& fates) const {
     auto order = cases_;
-    const auto hints = entry_.hints(fates.front()->mutant.section);
-    std::ranges::stable_partition(order, [&](const Case* one) { return is_hinted(*one, hints); });
+    const auto& section = fates.front()->mutant.section;
+    std::ranges::stable_partition(
+        order, [&](const Case* one) { return is_hinted(*one, entry_.hints, section); });
     for (auto* fate : fates) {
       const auto killer = try_mutant(*fate, order);
       if (killer != order.end()) std::rotate(order.begin(), killer, killer + 1);
@@ -207,7 +211,7 @@ class Mutation {
     std::vector<const Mutant*> order;
     for (const auto& fate : result_.fates) order.push_back(&fate.mutant);
     std::ranges::stable_partition(order, [&](const Mutant* mutant) {
-      return is_hinted(*own.front(), entry_.hints(mutant->section));
+      return is_hinted(*own.front(), entry_.hints, mutant->section);
     });
     return std::ranges::any_of(order, [&](const Mutant* mutant) {
       auto trial = open(mutant->name);
@@ -269,16 +273,24 @@ ReportSection rates_of(const MutationResult& result) {
   return section;
 }
 
-constexpr std::array kMutants{
-    MutantsEntry{"demo", demo::all_mutants, demo::mutant_hints},
-    MutantsEntry{"kinovazed", kinovazed::all_mutants, kinovazed::mutant_hints},
-    MutantsEntry{"morap", morap::all_mutants, morap::mutant_hints},
-    MutantsEntry{"parol6", parol6::all_mutants, parol6::mutant_hints},
-};
-
 }  // namespace
 
-std::span<const MutantsEntry> mutants() noexcept { return kMutants; }
+std::span<const MutantsEntry> mutants() noexcept {
+  static const std::array kMutants{demo::mutants_entry(), kinovazed::mutants_entry(),
+                                   morap::mutants_entry(), parol6::mutants_entry()};
+  return kMutants;
+}
+
+std::vector<Mutant> mutants_of(const MutantsEntry& entry) {
+  std::vector<Mutant> all;
+  for (auto& fault : entry.faults()) {
+    Mutant mutant{std::move(fault.name), std::move(fault.section)};
+    const auto known = std::ranges::find(entry.equivalents, mutant.name, &EquivalentFault::name);
+    if (known != entry.equivalents.end()) mutant.equivalent = known->reason;
+    all.push_back(std::move(mutant));
+  }
+  return all;
+}
 
 Outcome<MutationResult> run_mutants(const Suite& suite, const MutantsEntry& entry,
                                     const MutationOptions& options) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "conformance/suite.hpp"
+#include "emulators/faults/named_fault.hpp"
 #include "harness/core/error.hpp"
 #include "harness/report/report.hpp"
 
@@ -21,16 +23,31 @@ struct Mutant {
   std::string equivalent{};
 };
 
-/// The mutants of a device, and where to look for a section's requirements first.
+/// A fault that is none on the wire.
+struct EquivalentFault {
+  std::string_view name;
+  std::string_view reason;
+};
+
+/// Which requirements the faults of a section break most likely.
+struct SectionHints {
+  std::string_view section;
+  std::array<std::string_view, 4> requirements;  ///< beginnings of names; the rest is empty
+};
+
+/// What is known about the faults of a device.
 struct MutantsEntry {
   std::string_view device;
-  std::vector<Mutant> (*all)();
-  /// Beginnings of the names of requirements that faults of that section break.
-  std::span<const std::string_view> (*hints)(std::string_view section);
+  std::vector<NamedFault> (*faults)();
+  std::span<const EquivalentFault> equivalents;
+  std::span<const SectionHints> hints;  ///< for the speed alone
 };
 
 /// Devices that have mutants.
 [[nodiscard]] std::span<const MutantsEntry> mutants() noexcept;
+
+/// One for each fault, in the order of the device's list.
+[[nodiscard]] std::vector<Mutant> mutants_of(const MutantsEntry& entry);
 
 /// What became of one.
 struct MutantFate {
@@ -49,7 +66,7 @@ struct MutationOptions {
 
 /// A suite tried on its mutants.
 struct MutationResult {
-  std::vector<MutantFate> fates;             ///< in the order of `MutantsEntry::all`
+  std::vector<MutantFate> fates;             ///< in the order of `mutants_of`
   std::vector<std::string> broken_on_sound;  ///< cases that fail without any fault
   std::vector<const Requirement*> unproven;  ///< musts that no mutant breaks
 };

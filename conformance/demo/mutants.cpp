@@ -6,22 +6,23 @@
 #include "harness/wire/demo/demo.hpp"
 
 namespace armjig::demo {
+namespace {
 
-std::vector<Mutant> all_mutants() {
-  std::vector<Mutant> all;
+constexpr std::array kEquivalents{EquivalentFault{"stuck:start", "it has only one value"}};
+constexpr std::array kHints{SectionHints{"Replies", {"demo"}}};
+
+std::vector<NamedFault> all_faults() {
+  std::vector<NamedFault> all;
   for (const auto& field : reply_fields()) {
     for (const auto* kind : {"zero:", "stuck:", "off-by-one:"}) {
-      const bool is_start = field.name == "start" && std::string_view{kind} == "stuck:";
-      all.push_back({std::string{kind}.append(field.name), "Replies",
-                     is_start ? "it has only one value" : ""});
+      all.push_back({std::string{kind}.append(field.name), "Replies"});
     }
   }
   return all;
 }
 
-std::span<const std::string_view> mutant_hints(std::string_view /*section*/) {
-  static constexpr std::array<std::string_view, 1> kAll{"demo"};
-  return kAll;
-}
+}  // namespace
+
+MutantsEntry mutants_entry() noexcept { return {"demo", all_faults, kEquivalents, kHints}; }
 
 }  // namespace armjig::demo

@@ -13,12 +13,6 @@
 namespace armjig::kinovazed {
 namespace {
 
-template <class Meaning>
-struct Named {
-  std::string_view name;
-  Meaning meaning;
-};
-
 using Flag = bool Behaviour::*;
 constexpr std::array kFlags{Named<Flag>{"ignores-bad-lines", &Behaviour::ignores_bad_lines},
                             Named<Flag>{"accepts-before-event", &Behaviour::accepts_before_event},
@@ -45,20 +39,6 @@ constexpr std::array kFigures{
                                            ? kObjectiveNames.size()
                                            : kDocumentedObjectives;
                  }}};
-
-template <class Table>
-auto* find_named(const Table& table, std::string_view name) {
-  const auto found = std::ranges::find(table, name, [](const auto& one) { return one.name; });
-  return found == table.end() ? nullptr : &*found;
-}
-
-/// What stands in front of the first `mark`, which is taken away with it.
-std::string_view take_until(std::string_view& text, char mark) {
-  const auto place = text.find(mark);
-  const auto head = text.substr(0, place);
-  text.remove_prefix(place == std::string_view::npos ? text.size() : place + 1);
-  return head;
-}
 
 std::optional<std::uint8_t> bit_of(std::string_view text) noexcept {
   if (text.size() != 1 || text[0] < '0' || text[0] > '7') return std::nullopt;

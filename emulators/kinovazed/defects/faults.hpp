@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "emulators/faults/named_fault.hpp"
 #include "emulators/kinovazed/defects/quirks.hpp"
 #include "emulators/kinovazed/server.hpp"
 #include "harness/core/error.hpp"
@@ -29,12 +30,7 @@ namespace armjig::kinovazed {
 [[nodiscard]] Outcome<void> add_fault(std::string_view text, ServerOptions& options,
                                       std::vector<Quirk>& quirks);
 
-/// Every fault that there is, as `add_fault` reads it, and the section of docs/spec that it is
-/// about.
-struct NamedFault {
-  std::string name;
-  std::string section;
-};
+/// Every fault that there is, as `add_fault` reads it.
 [[nodiscard]] std::vector<NamedFault> all_faults();
 
 }  // namespace armjig::kinovazed

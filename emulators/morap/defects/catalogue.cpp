@@ -10,12 +10,6 @@
 namespace armjig::morap {
 namespace {
 
-template <class Meaning>
-struct Named {
-  std::string_view name;
-  Meaning meaning;
-};
-
 using Spoil = void (*)(NodeSetup& setup);
 
 template <bool Law::* habit>
@@ -119,19 +113,6 @@ constexpr std::array kFieldKinds{
     Named<Fault::Kind>{"swap-bytes", Fault::Kind::kSwapBytes},
     Named<Fault::Kind>{"reverse-bits", Fault::Kind::kReverseBits},
 };
-
-const auto* find_named(const auto& table, std::string_view name) {
-  const auto found = std::ranges::find(table, name, [](const auto& one) { return one.name; });
-  return found == table.end() ? nullptr : &*found;
-}
-
-/// What stands in front of the first `mark`, which is taken away with it.
-std::string_view take_until(std::string_view& text, char mark) {
-  const auto place = text.find(mark);
-  const auto head = text.substr(0, place);
-  text.remove_prefix(place == std::string_view::npos ? text.size() : place + 1);
-  return head;
-}
 
 // Each reads what stands behind its word and the colon. False: there is no such thing.
 using Add = bool (*)(std::string_view text, NodeSetup& setup, Defects& defects);

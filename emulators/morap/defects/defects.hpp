@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emulators/faults/fault.hpp"
+#include "emulators/faults/named_fault.hpp"
 #include "emulators/morap/defects/quirks.hpp"
 #include "emulators/morap/node.hpp"
 #include "harness/core/error.hpp"
@@ -49,12 +50,7 @@ struct Defects {
 /// Problems: `kBadValue`.
 [[nodiscard]] Outcome<void> add_fault(std::string_view text, NodeSetup& setup, Defects& defects);
 
-/// Every fault that there is, as `add_fault` reads it, and the section of docs/spec that it is
-/// about.
-struct NamedFault {
-  std::string name;
-  std::string section;
-};
+/// Every fault that there is, as `add_fault` reads it.
 [[nodiscard]] std::vector<NamedFault> all_faults();
 
 /// A node with defects: an `EmulatedBusDevice`. Without any it is the node itself.

@@ -10,12 +10,6 @@
 namespace armjig::parol6 {
 namespace {
 
-template <class Meaning>
-struct Named {
-  std::string_view name;
-  Meaning meaning;
-};
-
 constexpr std::array kStates{Named<BoardState>{"enabled", BoardState::kEnabled},
                              Named<BoardState>{"disabled", BoardState::kDisabled},
                              Named<BoardState>{"homing", BoardState::kHoming}};
@@ -68,20 +62,6 @@ constexpr std::array kDemoFigures{
     Named<SpoilDemo>{"maximum", [](DemoParameters& f) { f.max_speed_and_acceleration *= 2; }},
     Named<SpoilDemo>{"out", [](DemoParameters& f) { f.out.value += 100; }},
     Named<SpoilDemo>{"back", [](DemoParameters& f) { f.back.value += 1; }}};
-
-template <class Table>
-auto* find_named(const Table& table, std::string_view name) {
-  const auto found = std::ranges::find(table, name, [](const auto& one) { return one.name; });
-  return found == table.end() ? nullptr : &*found;
-}
-
-/// What stands in front of the first `mark`, which is taken away with it.
-std::string_view take_until(std::string_view& text, char mark) {
-  const auto place = text.find(mark);
-  const auto head = text.substr(0, place);
-  text.remove_prefix(place == std::string_view::npos ? text.size() : place + 1);
-  return head;
-}
 
 std::optional<std::size_t> joint_of(std::string_view text) noexcept {
   if (text.size() != 2 || text[0] != 'j' || text[1] < '1' || text[1] > '6') return std::nullopt;

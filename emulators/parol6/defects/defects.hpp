@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emulators/faults/fault.hpp"
+#include "emulators/faults/named_fault.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "emulators/parol6/defects/ears.hpp"
 #include "emulators/parol6/defects/quirks.hpp"
@@ -63,12 +64,7 @@ struct Defects {
 [[nodiscard]] Outcome<void> add_fault(std::string_view text, ArmOptions& arm, Defects& defects,
                                       std::vector<Fault>& sent);
 
-/// Every fault that there is, as `add_fault` reads it, and the section of docs/spec that it is
-/// about.
-struct NamedFault {
-  std::string name;
-  std::string section;
-};
+/// Every fault that there is, as `add_fault` reads it.
 [[nodiscard]] std::vector<NamedFault> all_faults();
 
 /// An arm with defects. Without any it is the arm itself.

@@ -19,7 +19,7 @@ const Suite& suite_of(std::string_view device) {
   return *std::ranges::find(suites(), device, &Suite::device);
 }
 
-const MutantsEntry& mutants_of(std::string_view device) {
+const MutantsEntry& entry_of(std::string_view device) {
   return *std::ranges::find(mutants(), device, &MutantsEntry::device);
 }
 
@@ -34,33 +34,33 @@ std::vector<std::string> findings(const Suite& suite, const MutantsEntry& entry,
   return rows;
 }
 
-std::vector<Mutant> sample() {
-  const auto all = mutants_of("parol6").all();
-  std::vector<Mutant> some;
+std::vector<NamedFault> sample() {
+  const auto all = entry_of("parol6").faults();
+  std::vector<NamedFault> some;
   std::ranges::sample(all, std::back_inserter(some), 60, std::mt19937{1});
   return some;
 }
 
 TEST(Mutation, ThereAreAtLeast200GeneratedBoardsAndMostAreNotEquivalent) {
-  const auto all = mutants_of("parol6").all();
+  const auto all = mutants_of(entry_of("parol6"));
   const auto due = std::ranges::count_if(all, &std::string::empty, &Mutant::equivalent);
   EXPECT_GE(due, 200);
 }
 
 TEST(Mutation, KillsASampleOfFaultyBoards) {
-  auto entry = mutants_of("parol6");
-  entry.all = sample;
+  auto entry = entry_of("parol6");
+  entry.faults = sample;
   EXPECT_THAT(findings(suite_of("parol6"), entry, {.proves_requirements = false}),
               testing::IsEmpty());
 }
 
 TEST(Mutation, KillsEveryFaultyDemoDeviceAndProvesEveryMust) {
-  EXPECT_THAT(findings(suite_of("demo"), mutants_of("demo"), {}), testing::IsEmpty());
+  EXPECT_THAT(findings(suite_of("demo"), entry_of("demo"), {}), testing::IsEmpty());
 }
 
 TEST(Mutation, ListsWhatSurvivesAsAFinding) {
-  auto entry = mutants_of("demo");
-  entry.all = [] { return std::vector<Mutant>{{"off-by-one:no-such-field", "Nowhere"}}; };
+  auto entry = entry_of("demo");
+  entry.faults = [] { return std::vector<NamedFault>{{"off-by-one:no-such-field", "Nowhere"}}; };
   EXPECT_THAT(findings(suite_of("demo"), entry, {.proves_requirements = false}),
               testing::ElementsAre(testing::HasSubstr("it survived")));
 }
