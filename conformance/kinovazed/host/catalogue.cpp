@@ -15,7 +15,8 @@ constexpr std::array kRequirements{
     // Lines.
     host("kinovazed.host.line-end", Level::kMust, "A client ends each line with CR LF.",
          "document, messages"),
-    host("kinovazed.host.line-empty", Level::kMust, "A client sends no empty lines.",
+    host("kinovazed.host.line-empty", Level::kMust,
+         "A client sends no LF alone: an empty line has its CR.",
          "server, transcript T71: an LF that comes first takes the byte behind it along"),
     host("kinovazed.host.line-length", Level::kMust,
          "A line has fewer than 128 bytes in front of its LF.",

@@ -106,14 +106,13 @@ void Conduct::end() noexcept {
   overtaken_.reset();
   moves_.clear();
   enter({}, std::nullopt);
-  before_.reset();
   led_here_.reset();
   has_looked_ = is_silence_told_ = is_stop_unasked_ = is_deflected_ = false;
 }
 
 void Conduct::enter(Instant time, std::optional<State> state) noexcept {
   if (state == state_) return;
-  before_.reset();
+  before_until_ = {};
   state_ = state;
   entered_ = time;
   is_stop_unasked_ = is_patience_told_ = false;
@@ -164,7 +163,7 @@ bool Conduct::is_allowed(Instant time, Verb verb) const noexcept {
   const auto& machine = shipped_machine();
   const bool recurs = led_here_ == verb && !is_motion(*state_) && state_ != kSettingMode;
   if (machine.next_state(*state_, verb) || recurs) return true;
-  return time <= before_until_ && (!before_ || machine.next_state(*before_, verb));
+  return time < before_until_ && (!before_ || machine.next_state(*before_, verb));
 }
 
 void Conduct::judge_state(Instant time, const Command& command, const Complain& complain) const {
@@ -304,7 +303,7 @@ void Conduct::take_event(Instant time, Event event) {
 }
 
 void Conduct::take_beat(Instant time, Heartbeat beat) noexcept {
-  has_looked_ = true;
+  const bool is_first = !std::exchange(has_looked_, true);
   if (!requests_.empty()) return;  // it may show the state before or after them
   const auto shown = shown_state(beat);
   const bool is_as_known = shown ? state_ == shown : state_ && is_shown_by_none(*state_);
@@ -313,6 +312,7 @@ void Conduct::take_beat(Instant time, Heartbeat beat) noexcept {
   enter(time, shown);
   is_stop_unasked_ = before.has_value() && shown == kEmergencyStopped;
   led_here_.reset();
+  if (is_first) return;  // who has not read it commands nothing
   before_ = before;
   before_until_ = time + (before ? kReaction : Duration{}) + noise_;
 }

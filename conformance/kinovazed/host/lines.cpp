@@ -92,7 +92,8 @@ void judge_values(const Command& command, const Complain& complain) {
 void judge_line(std::string_view line, const Complain& complain) {
   const bool has_cr = line.ends_with('\r');
   if (has_cr) line.remove_suffix(1);
-  if (line.empty()) return complain("kinovazed.host.line-empty", "an empty line came");
+  if (line.empty() && has_cr) return;
+  if (line.empty()) return complain("kinovazed.host.line-empty", "an LF came alone");
   if (!has_cr) {
     complain("kinovazed.host.line-end", fmt::format("{} ended with LF alone", shown(line)));
   }

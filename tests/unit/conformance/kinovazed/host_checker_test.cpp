@@ -117,7 +117,7 @@ std::vector<WrongClient> wrong_clients() {
   using namespace std::string_literals;
   return {
       {"kinovazed.host.line-end", bad_bytes("EStop\n")},
-      {"kinovazed.host.line-empty", bad_bytes("\r\n")},
+      {"kinovazed.host.line-empty", bad_bytes("\n")},
       {"kinovazed.host.line-length", bad_bytes("EStop" + std::string(125, ' ') + "\r\n")},
       {"kinovazed.host.line-finished",
        [](Session& client) { client.look().say("EStop").write("Quit").leave(); }},
