@@ -35,6 +35,7 @@ constexpr auto kHelp =
     "  armjig emulate parol6 --check                tells what the client program does wrong\n"
     "  armjig emulate kinovazed                     a server on its own TCP port, 51717\n"
     "  armjig emulate kinovazed --tcp 0 --set objectives=my.json\n"
+    "  armjig emulate kinovazed --check             the same for its clients\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
@@ -155,6 +156,13 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
   }
   auto server = entry.make(settings, options.device);
   if (!server) return report(server.error());
+  std::unique_ptr<ProgramCheck> check;
+  if (options.wants_check) {
+    auto made = make_check(options);
+    if (!made) return report(made.error());
+    check = *std::move(made);
+    server = check->watch(*std::move(server));
+  }
   SessionHostOptions host_options{.tcp = options.tcp, .speed = options.speed};
   if (!options.wants_tcp) host_options.tcp.port = entry.port;
   host_options.on_signal = HostOptions::OnSignal::kStop;
@@ -164,7 +172,7 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
   announce(options, {host->target()});
   host->run();
   print_statistics(host->statistics());
-  return Exit::kPassed;
+  return check ? conclude(*check, options) : Exit::kPassed;
 }
 
 Exit emulate(const Options& options) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "conformance/kinovazed/host/checker.hpp"
 #include "conformance/morap/host/checker.hpp"
 #include "conformance/parol6/host/checker.hpp"
 #include "harness/core/version.hpp"
@@ -16,6 +17,7 @@ namespace {
 constexpr std::size_t kRemembered = 3;
 
 constexpr std::array kChecks{
+    ProgramCheckEntry{"kinovazed", kinovazed::host_requirements, kinovazed::make_host_checker},
     ProgramCheckEntry{"morap", morap::host_requirements, morap::make_host_checker},
     ProgramCheckEntry{"parol6", parol6::host_requirements, parol6::make_host_checker},
 };
@@ -66,12 +68,91 @@ class ProgramCheck::Overheard final : public HostedStream {
   std::size_t heard_ = 0;  ///< of what was sent and not cleared
 };
 
+/// The same with connections.
+class ProgramCheck::OverheardServer final : public HostedServer {
+ public:
+  OverheardServer(ProgramCheck& check, std::unique_ptr<HostedServer> server)
+      : check_{check}, server_{std::move(server)} {}
+
+  [[nodiscard]] bool is_listening() const override { return server_->is_listening(); }
+  [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {
+    const auto id = server_->connect(time);
+    if (id) tell({time, *id, Kind::kBegun, {}});
+    overhear_sent();
+    return id;
+  }
+  void receive(Instant time, ConnectionId id, Bytes segment) override {
+    tell({time, id, Kind::kToServer, segment});
+    server_->receive(time, id, segment);
+    overhear_sent();
+  }
+  void half_close(Instant time, ConnectionId id) override {
+    tell({time, id, Kind::kHalfClosed, {}});
+    server_->half_close(time, id);
+    overhear_sent();
+  }
+  void close(Instant time, ConnectionId id) override {
+    tell({time, id, Kind::kClosed, {}});
+    server_->close(time, id);
+    overhear_sent();
+  }
+  void reset(Instant time, ConnectionId id) override {
+    tell({time, id, Kind::kReset, {}});
+    server_->reset(time, id);
+    overhear_sent();
+  }
+  [[nodiscard]] std::size_t unread(ConnectionId id) const override { return server_->unread(id); }
+
+  void advance_to(Instant time) override {
+    check_.now_ = time;
+    server_->advance_to(time);
+    overhear_sent();
+  }
+  [[nodiscard]] std::optional<Instant> next_event() const override { return server_->next_event(); }
+  [[nodiscard]] std::span<const Event> sent() const override { return server_->sent(); }
+  void clear_sent() override {
+    server_->clear_sent();
+    heard_ = 0;
+  }
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
+    const bool is_known = server_->set_input(time, name, value);
+    overhear_sent();
+    return is_known;
+  }
+  [[nodiscard]] std::vector<std::string> take_log() override { return server_->take_log(); }
+
+ private:
+  using Kind = ConnectionEvent::Kind;
+
+  void tell(const ConnectionEvent& event) {
+    check_.now_ = event.time;
+    check_.checker_->on_connection(event);
+  }
+  void overhear_sent() {
+    for (const auto& event : server_->sent().subspan(heard_)) {
+      const bool is_data = event.kind == SessionEvent::Kind::kData;
+      check_.checker_->on_connection({event.time, event.connection,
+                                      is_data ? Kind::kFromServer : Kind::kDropped, event.bytes});
+    }
+    heard_ = server_->sent().size();
+    check_.take_offences();
+  }
+
+  ProgramCheck& check_;
+  std::unique_ptr<HostedServer> server_;
+  std::size_t heard_ = 0;  ///< of what was sent and not cleared
+};
+
 ProgramCheck::ProgramCheck(const ProgramCheckEntry& entry, const LinkNoise& noise,
                            std::function<void(const Offence&)> on_offence)
     : entry_{entry}, checker_{entry.make(noise)}, on_offence_{std::move(on_offence)} {}
 
 std::unique_ptr<HostedStream> ProgramCheck::watch(std::unique_ptr<HostedStream> device) {
   return std::make_unique<Overheard>(*this, std::move(device));
+}
+
+std::unique_ptr<HostedServer> ProgramCheck::watch(std::unique_ptr<HostedServer> server) {
+  return std::make_unique<OverheardServer>(*this, std::move(server));
 }
 
 void ProgramCheck::take_offences() {

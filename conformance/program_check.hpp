@@ -11,6 +11,7 @@
 
 #include "conformance/program_checker.hpp"
 #include "conformance/requirement.hpp"
+#include "emulators/host/hosted_server.hpp"
 #include "emulators/host/hosted_stream.hpp"
 #include "harness/report/report.hpp"
 
@@ -35,6 +36,7 @@ class ProgramCheck {
 
   /// The same device, overheard. `this` must outlive it.
   [[nodiscard]] std::unique_ptr<HostedStream> watch(std::unique_ptr<HostedStream> device);
+  [[nodiscard]] std::unique_ptr<HostedServer> watch(std::unique_ptr<HostedServer> server);
 
   /// Ends the session: a row for each requirement, in the order of the catalogue.
   [[nodiscard]] Report finish();
@@ -44,6 +46,7 @@ class ProgramCheck {
 
  private:
   class Overheard;
+  class OverheardServer;
   struct Record {
     std::size_t count = 0;
     std::vector<Offence> first;

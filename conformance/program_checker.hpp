@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,23 @@ struct Offence {
   std::string what;  ///< one sentence: what it did, with the numbers
 };
 
+/// Something on one of the connections of a server.
+struct ConnectionEvent {
+  enum class Kind : std::uint8_t {
+    kBegun,
+    kToServer,    ///< `bytes`, as they came
+    kFromServer,  ///< `bytes`
+    kHalfClosed,  ///< the client sends no more
+    kClosed,      ///< by the client
+    kReset,       ///< by the client
+    kDropped,     ///< ended in any way by the server
+  };
+  Instant time{};
+  std::uint32_t connection{};  ///< numbered in the order in which they come
+  Kind kind{};
+  Bytes bytes;
+};
+
 /// Judges the program at the other end of a device's link by what passes both ways, without any
 /// I/O. Times never decrease. One for each session of a device, from its power-up.
 class ProgramChecker {
@@ -29,6 +47,13 @@ class ProgramChecker {
 
   virtual void to_device(Instant time, Bytes bytes) = 0;
   virtual void from_device(Instant time, Bytes bytes) = 0;
+  /// Of a server, instead of the two above. Who does not tell connections apart hears the bytes of
+  /// all of them.
+  virtual void on_connection(const ConnectionEvent& event) {
+    using Kind = ConnectionEvent::Kind;
+    if (event.kind == Kind::kToServer) to_device(event.time, event.bytes);
+    if (event.kind == Kind::kFromServer) from_device(event.time, event.bytes);
+  }
   /// Nothing more will come.
   virtual void finish(Instant time) = 0;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "conformance/kinovazed/chapters.hpp"
+#include "conformance/kinovazed/host/checker.hpp"
 #include "conformance/kinovazed/server_bench.hpp"
 #include "emulators/host/devices.hpp"
 
@@ -47,6 +48,7 @@ Suite suite() noexcept {
       Chapter{"Supervision of the arm", arm_requirements(), arm_cases()},
       Chapter{"Robustness", robust_requirements(), robust_cases()},
       Chapter{"Deaths", death_requirements(), death_cases()},
+      Chapter{"Client programs", host_requirements(), {}},
   };
   return {"kinovazed", "0.1", kChapters, kStarts, open};
 }

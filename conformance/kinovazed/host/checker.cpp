@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/host/checker.hpp"
+
+#include <fmt/core.h>
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "conformance/kinovazed/host/conduct.hpp"
+#include "conformance/kinovazed/host/lines.hpp"
+
+namespace armjig::kinovazed {
+namespace {
+
+class HostChecker final : public ProgramChecker {
+ public:
+  explicit HostChecker(const LinkNoise& noise) : noise_{noise.most}, conduct_{noise.most} {}
+
+  void to_device(Instant time, Bytes bytes) override {
+    begin_only(time);
+    on_connection({time, 0, ConnectionEvent::Kind::kToServer, bytes});
+  }
+  void from_device(Instant time, Bytes bytes) override {
+    begin_only(time);
+    on_connection({time, 0, ConnectionEvent::Kind::kFromServer, bytes});
+  }
+
+  void on_connection(const ConnectionEvent& event) override {
+    now_ = event.time;
+    judge_crowd();
+    conduct_.tick(now_, complain_);
+    if (event.kind == ConnectionEvent::Kind::kBegun) return admit(event.connection);
+    const auto client = clients_.find(event.connection);
+    if (client == clients_.end()) return;  // it has left, and the server does not know yet
+    switch (event.kind) {
+      case ConnectionEvent::Kind::kToServer:
+        return hear_client(client->second, is_served(client->first), event.bytes);
+      case ConnectionEvent::Kind::kFromServer:
+        return hear_server(client->second, is_served(client->first), event.bytes);
+      case ConnectionEvent::Kind::kDropped:
+        return remove(client->first);
+      default:
+        client->second.lines.end(complain_);
+        if (is_served(client->first)) conduct_.leave(now_, complain_);
+        remove(client->first);
+    }
+  }
+
+  void finish(Instant time) override {
+    now_ = time;
+    judge_crowd();
+    conduct_.tick(now_, complain_);
+  }
+
+  [[nodiscard]] std::size_t messages() const noexcept override { return messages_; }
+
+ private:
+  using Id = std::uint32_t;
+  struct Client {
+    Lines lines;
+    LineSplitter answers;
+  };
+
+  [[nodiscard]] bool is_served(Id id) const noexcept { return clients_.begin()->first == id; }
+
+  /// For whoever does not tell of connections.
+  void begin_only(Instant time) {
+    if (clients_.empty()) on_connection({time, 0, ConnectionEvent::Kind::kBegun, {}});
+  }
+
+  void admit(Id id) {
+    clients_[id] = {};
+    if (is_served(id)) return conduct_.begin(now_);
+    crowded_since_ = now_;
+  }
+
+  /// One that has just left may be seen behind the next one that comes.
+  void judge_crowd() {
+    if (!crowded_since_ || now_ - *crowded_since_ <= noise_) return;
+    crowded_since_.reset();
+    complain_("kinovazed.host.one-connection", "a client came, and another one was there");
+  }
+
+  void hear_client(Client& client, bool is_served, Bytes bytes) {
+    const auto before = client.lines.count();
+    client.lines.feed(
+        bytes,
+        [&](const Command& command) {
+          if (is_served) conduct_.command(now_, command, complain_);
+        },
+        complain_);
+    messages_ += client.lines.count() - before;
+  }
+
+  void hear_server(Client& client, bool is_served, Bytes bytes) {
+    while (!bytes.empty()) {
+      const auto step = client.answers.step(bytes);
+      bytes = bytes.subspan(step.used);
+      if (step.found != LineSplitter::Found::kLine || !is_served) continue;
+      if (const auto message = decode_message(step.line)) conduct_.message(now_, *message);
+    }
+  }
+
+  void remove(Id id) {
+    const bool was_served = is_served(id);
+    clients_.erase(id);
+    crowded_since_.reset();
+    if (!was_served) return;
+    conduct_.end();
+    if (!clients_.empty()) conduct_.begin(now_);
+  }
+
+  Complain complain_ = [this](std::string_view requirement, std::string what) {
+    add(now_, requirement, std::move(what));
+  };
+  Duration noise_;
+  Instant now_{};
+  std::size_t messages_ = 0;
+  Conduct conduct_;
+  std::map<Id, Client> clients_;  ///< the first one is served
+  std::optional<Instant> crowded_since_{};
+};
+
+}  // namespace
+
+std::unique_ptr<ProgramChecker> make_host_checker(const LinkNoise& noise) {
+  return std::make_unique<HostChecker>(noise);
+}
+
+}  // namespace armjig::kinovazed
