@@ -14,6 +14,7 @@
 
 #include "cli/command.hpp"
 #include "cli/emulate_bus.hpp"
+#include "cli/server_inputs.hpp"
 #include "conformance/program_check.hpp"
 #include "emulators/host/buses.hpp"
 #include "emulators/host/devices.hpp"
@@ -36,6 +37,9 @@ constexpr auto kHelp =
     "  armjig emulate kinovazed                     a server on its own TCP port, 51717\n"
     "  armjig emulate kinovazed --tcp 0 --set objectives=my.json\n"
     "  armjig emulate kinovazed --check             the same for its clients\n"
+    "\n"
+    "Lines on standard input do to a server what no client can, such as 'arm.plugged 0'; 'help'\n"
+    "lists them.\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
@@ -154,8 +158,10 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
         Problem{ErrorCode::kBadValue, options.device,
                 "it is a TCP server and has no pseudo-terminal; leave out --pty, --link"});
   }
+  const bool takes_inputs = has_standard_input();
   auto server = entry.make(settings, options.device);
   if (!server) return report(server.error());
+  const auto inputs = (*server)->inputs();
   std::unique_ptr<ProgramCheck> check;
   if (options.wants_check) {
     auto made = make_check(options);
@@ -170,7 +176,10 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
   auto host = SessionHost::open(std::move(*server), host_options);
   if (!host) return report(host.error());
   announce(options, {host->target()});
+  std::optional<ServerInputs> by_hand;
+  if (takes_inputs) by_hand.emplace(*host, inputs);
   host->run();
+  by_hand.reset();
   print_statistics(host->statistics());
   return check ? conclude(*check, options) : Exit::kPassed;
 }

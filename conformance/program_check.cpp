@@ -119,6 +119,7 @@ class ProgramCheck::OverheardServer final : public HostedServer {
     overhear_sent();
     return is_known;
   }
+  [[nodiscard]] std::span<const Input> inputs() const override { return server_->inputs(); }
   [[nodiscard]] std::vector<std::string> take_log() override { return server_->take_log(); }
 
  private:

@@ -85,6 +85,14 @@ class SessionHost::Loop {
   void run() { context_.run(); }
   void stop() { context_.stop(); }
 
+  void set_input(std::string name, std::int64_t value, std::function<void(bool is_known)> tell) {
+    boost::asio::post(context_, [this, name = std::move(name), value, tell = std::move(tell)] {
+      catch_up();
+      tell(server_->set_input(reached_, name, value));
+      pump();
+    });
+  }
+
   [[nodiscard]] std::string target() const {
     const auto host = endpoint_.address().to_string();
     return endpoint_.address().is_v6() ? fmt::format("tcp:[{}]:{}", host, endpoint_.port())
@@ -333,6 +341,10 @@ Outcome<SessionHost> SessionHost::open(std::unique_ptr<HostedServer> server,
 std::string SessionHost::target() const { return loop_->target(); }
 void SessionHost::run() { loop_->run(); }
 void SessionHost::stop() { loop_->stop(); }
+void SessionHost::set_input(std::string name, std::int64_t value,
+                            std::function<void(bool is_known)> tell) {
+  loop_->set_input(std::move(name), value, std::move(tell));
+}
 HostStatistics SessionHost::statistics() const { return loop_->statistics(); }
 
 }  // namespace armjig

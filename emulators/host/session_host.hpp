@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "emulators/host/host.hpp"
 #include "emulators/host/hosted_server.hpp"
@@ -23,7 +26,7 @@ struct SessionHostOptions {
 /// a server does not read stays in the kernel but for 16 KiB; a client that does not read loses
 /// whole messages behind 64 KiB.
 ///
-/// One thread: everything but `stop` belongs to the one that calls `run`.
+/// One thread: everything but `stop` and `set_input` belongs to the one that calls `run`.
 class SessionHost {
  public:
   /// Problems: `kBadValue` (speed, address), `kBusy`, `kNoPermission`, `kNotFound`, `kSystem`.
@@ -40,6 +43,9 @@ class SessionHost {
   void run();
   /// Ends `run`, now or as soon as it begins. May be called from any thread.
   void stop();
+  /// Sets an input of the server while `run` runs, and tells there whether it has one of that name.
+  /// May be called from any thread.
+  void set_input(std::string name, std::int64_t value, std::function<void(bool is_known)> tell);
   [[nodiscard]] HostStatistics statistics() const;
 
  private:

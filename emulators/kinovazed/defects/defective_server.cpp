@@ -2,6 +2,7 @@
 #include "emulators/kinovazed/defects/defective_server.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace armjig::kinovazed {
@@ -11,7 +12,30 @@ std::string_view text_of(Bytes bytes) noexcept {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+constexpr std::string_view kFail = "arm.fail.";
+constexpr std::string_view kJoystick = "arm.joystick.";
+/// Translation first, then the wrist.
+constexpr std::array<std::string_view, 6> kAxisNames{"x",       "y",       "z",
+                                                     "wrist-x", "wrist-y", "wrist-z"};
+
+constexpr std::array kInputs{
+    ServerInput{"restart", "any: a new process, and an arm that was just switched on"},
+    ServerInput{"arm.plugged", "0 or 1: its USB cable"},
+    ServerInput{"arm.fail.CALL", "so many of the next calls fail; -1: all, 0: none"},
+    ServerInput{"arm.mode", "what the arm says that it does, as a number of Kinova's"},
+    ServerInput{"arm.current", "of all joints together, in milliampere"},
+    ServerInput{"arm.joystick.x", "its own joystick, -1000 to 1000: left and right"},
+    ServerInput{"arm.joystick.y", "-1000 to 1000: to the front and back"},
+    ServerInput{"arm.joystick.z", "-1000 to 1000: twisted, up and down"},
+    ServerInput{"arm.joystick.wrist-x", "-1000 to 1000: the same for the wrist"},
+    ServerInput{"arm.joystick.wrist-y", "-1000 to 1000"},
+    ServerInput{"arm.joystick.wrist-z", "-1000 to 1000"},
+    ServerInput{"arm.joystick.home", "1: its home button is held, 0: all of it is let go"},
+};
+
 }  // namespace
+
+std::span<const ServerInput> server_inputs() noexcept { return kInputs; }
 
 DefectiveServer::DefectiveServer(Server server, std::vector<Quirk> quirks)
     : fresh_{server},
@@ -134,12 +158,12 @@ void DefectiveServer::restart(Instant time) {
   open_.clear();
   server_ = fresh_;
   memories_.assign(quirks_.size(), {});
+  by_hand_ = {};
   epoch_ = time;
   first_id_ = next_id_;
 }
 
 bool DefectiveServer::set_arm(ArmPort& arm, std::string_view name, std::int64_t value) {
-  constexpr std::string_view kFail = "arm.fail.";
   if (name.starts_with(kFail)) {
     const auto call = find_word<ArmCall>(kArmCallNames, name.substr(kFail.size()));
     if (!call) return false;
@@ -150,6 +174,9 @@ bool DefectiveServer::set_arm(ArmPort& arm, std::string_view name, std::int64_t 
     value == 0 ? arm.unplug() : arm.plug();
     return true;
   }
+  if (name.starts_with(kJoystick)) {
+    return set_joystick(arm.plant(), name.substr(kJoystick.size()), value);
+  }
   return std::visit(
       [&](auto& plant) {
         if (name == "arm.mode") plant.set_mode(static_cast<ArmMode>(value));
@@ -157,6 +184,24 @@ bool DefectiveServer::set_arm(ArmPort& arm, std::string_view name, std::int64_t 
         return name == "arm.mode" || name == "arm.current";
       },
       arm.plant());
+}
+
+bool DefectiveServer::set_joystick(Plant& plant, std::string_view name, std::int64_t value) {
+  auto* const arm = std::get_if<JacoArm>(&plant);
+  if (arm == nullptr) return false;
+  if (name == "home") {
+    by_hand_ = {};
+    value == 0 ? arm->let_go_by_hand() : arm->press_home_by_hand();
+    return true;
+  }
+  const auto axis = find_word<std::size_t>(kAxisNames, name);
+  if (!axis) return false;
+  constexpr std::int64_t kFull = 1000;
+  const auto deflection =
+      static_cast<float>(std::clamp(value, -kFull, kFull)) / static_cast<float>(kFull);
+  (*axis < 3 ? by_hand_.translation[*axis] : by_hand_.wrist[*axis - 3]) = deflection;
+  arm->move_by_hand(by_hand_);
+  return true;
 }
 
 }  // namespace armjig::kinovazed

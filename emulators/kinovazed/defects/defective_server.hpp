@@ -14,6 +14,15 @@
 
 namespace armjig::kinovazed {
 
+/// Something at the server's machine or arm, and what its values are.
+struct ServerInput {
+  std::string_view name;
+  std::string_view values;
+};
+
+/// All that `DefectiveServer::set_input` knows; `CALL` stands for each of `kArmCallNames`.
+[[nodiscard]] std::span<const ServerInput> server_inputs() noexcept;
+
 /// A server with quirks at its sockets, and what people can do at its machine. Without quirks it is
 /// the server itself. Times given never decrease.
 class DefectiveServer {
@@ -28,13 +37,8 @@ class DefectiveServer {
   void reset(Instant time, ConnectionId id);
   [[nodiscard]] std::size_t unread(ConnectionId id) const noexcept;
 
-  /// Does at the server's machine or arm what no client can. False: nothing has that name.
-  ///
-  ///     restart           a new process and an arm that was just switched on; any value
-  ///     arm.plugged       0 or 1
-  ///     arm.fail.CALL     so many of the next calls fail, by `kArmCallNames`; -1: all
-  ///     arm.mode          what the arm reports, by `ArmMode`
-  ///     arm.current       of all joints together, in milliampere
+  /// Does at the server's machine or arm what no client can, by `server_inputs`. False: nothing has
+  /// that name; the arm of the recordings has no joystick of its own.
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
 
   void advance_to(Instant time);
@@ -53,11 +57,13 @@ class DefectiveServer {
   [[nodiscard]] bool leave(Instant time, ConnectionId id);
   void restart(Instant time);
   [[nodiscard]] bool set_arm(ArmPort& arm, std::string_view name, std::int64_t value);
+  [[nodiscard]] bool set_joystick(Plant& plant, std::string_view name, std::int64_t value);
 
   Server fresh_;  ///< as it is at the start of its process
   Server server_;
   std::vector<Quirk> quirks_;
   std::vector<QuirkMemory> memories_;
+  Stick by_hand_;              ///< where the arm's own joystick is
   Instant epoch_{};            ///< when the process began
   ConnectionId first_id_ = 0;  ///< of the process; it counts from 0
   ConnectionId next_id_ = 0;
