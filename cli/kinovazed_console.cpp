@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -175,7 +176,8 @@ void KinovaConsole::take_ending(const DriveEvent& event) {
     }
     return;
   }
-  const auto time = event.time - asked_->since;
+  // What nobody answers ends as it is sent, and that is in front of `since`.
+  const auto time = std::max(event.time - asked_->since, Duration::zero());
   asked_.reset();
   if (!is_done) steering_.reset();
   say_(is_done ? Tone::kAnswer : Tone::kFailed,

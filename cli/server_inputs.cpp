@@ -18,6 +18,7 @@ namespace armjig::cli {
 namespace {
 
 constexpr int kGlanceMs = 100;  ///< at whether it is time to end
+constexpr std::size_t kLongestLine = 4096;
 
 /// Reading a terminal from the background would stop the whole program.
 bool is_ours() noexcept {
@@ -66,6 +67,7 @@ void ServerInputs::read(const std::stop_token& stop) {
       obey(std::string_view{text_}.substr(0, end));
       text_.erase(0, end + 1);
     }
+    if (text_.size() > kLongestLine) return tell("standard input has no lines; it is left alone");
   }
 }
 
