@@ -74,6 +74,18 @@ std::unique_ptr<HostedStream> ProgramCheck::watch(std::unique_ptr<HostedStream> 
   return std::make_unique<Overheard>(*this, std::move(device));
 }
 
+void ProgramCheck::to_device(Instant time, Bytes bytes) {
+  now_ = time;
+  checker_->to_device(time, bytes);
+  take_offences();
+}
+
+void ProgramCheck::from_device(Instant time, Bytes bytes) {
+  now_ = time;
+  checker_->from_device(time, bytes);
+  take_offences();
+}
+
 void ProgramCheck::take_offences() {
   for (auto& offence : checker_->take_offences()) {
     auto& record = records_[offence.requirement];
