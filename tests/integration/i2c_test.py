@@ -82,6 +82,9 @@ def rows():
         ([ARMJIG, "morap", "tune", "--type", "pd", "--inertia", "0.2", "--pole", "-9", "--target",
           "i2c:/dev/i2c-1", "--node", "2", "--allow", "program"], 0, ["rate_hz = 400"]),
         ([ARMJIG, "morap", "read-params", "--target", "i2c:/dev/i2c-1", "--node", "5"], 3, ["!0x15"]),
+        *(([ARMJIG, "conformance", "morap", "--target", "i2c:/dev/i2c-1", "--tier", "quick", "--allow",
+            "all", "--filter", f"morap.{topic}"], 0, [" passed, 0 failed"])
+          for topic in ("read.", "program.", "motion.speed", "motion.current")),
         (["sh", "-c", "exit 42"], 42, []),
         (["sh", "-c", "kill -TERM $$"], 128 + 15, []),
         (["no-such-program"], 3, ["!no-such-program"]),
