@@ -104,6 +104,10 @@ def rows(folder):
         ("i2c scan --target emulated:?nodes=1,2&pen=yes", "", 0, ["0x11", "0x12", "0x19"]),
         ("i2c read 0x12 1 --select 83 --target emulated:", "", 0, ["needs_calibration"]),
         ("decode morap 24 80", "", 0, ["128 (read_angle)"]),
+        (f"decode morap --file {SOURCE}/captures/morap/bus-scan.jsonl", "", 1,
+         ["poke", "cut short", "!transactions without an answer"]),
+        (f"decode morap --file {SOURCE}/captures/morap/loop-voltage.jsonl --json", "", 0,
+         ["read_current"]),
         ("morap tune --type pd --inertia 0.2 --pole -9", "", 0,  # reference vector 42
          ["2200cdcc4c3e000010c1", "00900102364b03c1513f1441022c4b03c1473f144101fed774bf000000001a"]),
         ("morap read-params --target emulated:", "", 0, ["d = [-1.5711", "rate_hz = 500"]),
