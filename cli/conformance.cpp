@@ -12,6 +12,7 @@
 
 #include "cli/command.hpp"
 #include "cli/conformance_mutants.hpp"
+#include "cli/report_files.hpp"
 #include "cli/target_options.hpp"
 #include "conformance/run.hpp"
 #include "conformance/suite.hpp"
@@ -223,21 +224,6 @@ void add_diff(CLI::App& conformance, Action& action) {
   command->add_option("AFTER", files->after, "the report in question")->required();
   command->callback(
       [files, &action] { action = [files] { return compare(files->before, files->after); }; });
-}
-
-void add_report_files(CLI::App& command, ReportFiles& files) {
-  struct Form {
-    const char* option;
-    std::string* path;
-    const char* what;
-  };
-  for (const auto& [option, path, what] :
-       {Form{"--json", &files.json, "JSON"}, Form{"--html", &files.html, "a page"},
-        Form{"--junit", &files.junit, "JUnit XML"}, Form{"--sarif", &files.sarif, "SARIF"}}) {
-    command
-        .add_option(option, *path, fmt::format("also write the report to this file as {}", what))
-        ->type_name("FILE");
-  }
 }
 
 }  // namespace

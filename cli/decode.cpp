@@ -23,6 +23,8 @@ constexpr auto kHelp =
     "\n"
     "  armjig decode parol6 'FF FF FF 34 00 ... 01 02'     hexadecimal digits\n"
     "  armjig decode parol6 --file session.bin             raw bytes\n"
+    "  armjig decode morap --file captures/morap/bus-nodes-and-pen.jsonl    a recorded I2C bus\n"
+    "  armjig decode morap 24 01 00 00 80 3F               a write to address 12, shifted left\n"
     "  some-program | armjig decode parol6 --file - --json one JSON object a message\n"
     "\n"
     "A file may hold raw bytes, hexadecimal digits or a golden-trace/1 recording; which of them "
@@ -68,12 +70,22 @@ Outcome<std::vector<Chunk>> chunks_of_trace(const std::string& path, const std::
   const auto trace = parse_trace(path, text);
   if (!trace) return tl::unexpected{trace.error()};
   std::vector<Chunk> chunks;
+  int unanswered = 0;
   for (const auto& event : trace->events) {
     if (event.dir == "to_device") {
       chunks.push_back({Direction::kToDevice, event.time, event.bytes});
     } else if (event.dir == "from_device") {
       chunks.push_back({Direction::kFromDevice, event.time, event.bytes});
+    } else if (event.dir == "write" || event.dir == "read") {
+      auto message = bus_message_of(event);
+      if (message.empty()) ++unanswered;
+      const auto direction = event.dir == "read" ? Direction::kFromDevice : Direction::kToDevice;
+      if (!message.empty()) chunks.push_back({direction, event.time, std::move(message)});
     }
+  }
+  if (unanswered > 0) {
+    fmt::print(stderr, "armjig decode: {} transactions without an answer are left out\n",
+               unanswered);
   }
   return chunks;
 }

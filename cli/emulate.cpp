@@ -2,9 +2,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +12,7 @@
 
 #include "cli/command.hpp"
 #include "cli/emulate_bus.hpp"
+#include "cli/program_judge.hpp"
 #include "cli/server_inputs.hpp"
 #include "conformance/program_check.hpp"
 #include "emulators/host/buses.hpp"
@@ -122,27 +121,14 @@ Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) 
 
 /// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
 constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
-/// What is broken in every frame need not be said a hundred times a second.
-constexpr std::size_t kMostLines = 3;
 
 Outcome<std::unique_ptr<ProgramCheck>> make_check(const Options& options) {
-  const auto entries = program_checks();
-  const auto entry = std::ranges::find(entries, options.device, &ProgramCheckEntry::device);
-  if (entry == entries.end()) {
-    return problem(ErrorCode::kBadValue, "--check",
-                   "nothing is demanded of programs for " + options.device);
-  }
   const LinkNoise noise{std::chrono::duration_cast<Duration>(kSchedulingNoise * options.speed)};
-  auto lines = std::make_shared<std::map<std::string_view, std::size_t>>();
-  return std::make_unique<ProgramCheck>(*entry, noise, [lines](const Offence& offence) {
-    if (++(*lines)[offence.requirement] > kMostLines) return;
-    fmt::print(stderr, "armjig: {:.3f} s {}: {}\n",
-               std::chrono::duration<double>{offence.time.time_since_epoch()}.count(),
-               offence.requirement, offence.what);
-  });
+  return make_program_check(options.device, noise);
 }
 
-Exit conclude(ProgramCheck& check, const Options& options) {
+template <class Check>
+Exit conclude(Check& check, const Options& options) {
   const auto result = check.finish();
   fmt::print("{}\n", options.wants_json ? to_json(result) : to_text(result));
   if (const auto written = write_files(result, options.files); !written) {
@@ -184,18 +170,26 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
   return check ? conclude(*check, options) : Exit::kPassed;
 }
 
+Exit emulate_bus(const BusEntry& entry, const Options& options, const DeviceOptions& settings) {
+  const bool has_others =
+      options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1;
+  if (has_others) {
+    return report({ErrorCode::kBadValue, options.device,
+                   "a bus takes --set, --json and --check, and no other option"});
+  }
+  const auto form = options.wants_json ? Announcement::kJson : Announcement::kText;
+  if (!options.wants_check) return emulate_bus(entry, settings, form, {});
+  const auto check = BusCheck::make(options.device);
+  if (!check) return report(check.error());
+  const auto served = emulate_bus(entry, settings, form, (*check)->listener());
+  return served == Exit::kPassed ? conclude(**check, options) : served;
+}
+
 Exit emulate(const Options& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
   if (const auto* bus = find_hosted_bus(options.device)) {
-    const bool has_others = options.wants_pty || !options.pty.link.empty() || options.wants_tcp ||
-                            options.speed != 1 || options.wants_check;
-    if (has_others) {
-      return report({ErrorCode::kBadValue, options.device,
-                     "a bus takes --set and --json, and no other option"});
-    }
-    return emulate_bus(*bus, *settings,
-                       options.wants_json ? Announcement::kJson : Announcement::kText);
+    return emulate_bus(*bus, options, *settings);
   }
   for (const auto& entry : hosted_servers()) {
     if (entry.device == options.device) return emulate_server(entry, options, *settings);

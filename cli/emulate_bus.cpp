@@ -61,14 +61,15 @@ sigset_t block_signals() {
 
 }  // namespace
 
-Exit emulate_bus(const BusEntry& entry, DeviceOptions options, Announcement form) {
+Exit emulate_bus(const BusEntry& entry, DeviceOptions options, Announcement form,
+                 BusListener listener) {
   const std::string device{entry.device};
   const auto number = take_number(options, device);
   if (!number) return report(number.error());
   auto bus = entry.make(options, device);
   if (!bus) return report(bus.error());
   const auto signals = block_signals();
-  const auto i2c = VirtualI2c::open(*std::move(bus), *number);
+  const auto i2c = VirtualI2c::open(*std::move(bus), *number, std::move(listener));
   if (!i2c) return report(i2c.error());
   announce(*i2c, entry.device, form);
   int signal = 0;

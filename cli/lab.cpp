@@ -3,9 +3,12 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/program_judge.hpp"
+#include "cli/report_files.hpp"
 #include "emulators/host/morap_bus.hpp"
 #include "emulators/host/run_program.hpp"
 #include "emulators/host/virtual_i2c.hpp"
@@ -31,13 +34,38 @@ constexpr auto kHelp =
     "  [[thermometer]]   # any other device\n"
     "  address = 0x48\n"
     "\n"
-    "Exit code: that of the program, or 128 and the number of the signal that ended it.";
+    "With --check the program is held to what is demanded of the masters of MORAP nodes: what it\n"
+    "does wrong is said at once, and a report at the end, both on standard error.\n"
+    "\n"
+    "Exit code: that of the program, or 128 and the number of the signal that ended it; with "
+    "--check\n"
+    "1 for findings and 4 if nobody was told anything, unless the program failed itself.";
 
 struct Options {
   std::string nodes;
   int number = 1;
+  bool wants_check = false;
+  ReportFiles files;
   std::vector<std::string> program;
 };
+
+/// Standard output is the program's.
+Exit conclude(const Report& result, const Options& options, Exit of_program) {
+  fmt::print(stderr, "{}\n", to_text(result));
+  if (const auto written = write_files(result, options.files); !written) {
+    return report(written.error());
+  }
+  return of_program == Exit::kPassed ? static_cast<Exit>(conclusion_of(result)) : of_program;
+}
+
+/// Answers a problem of ours, or how the program ended.
+Outcome<Exit> run_on(i2c::Bus bus, const Options& options, BusListener listener) {
+  const auto i2c = VirtualI2c::open(std::move(bus), options.number, std::move(listener));
+  if (!i2c) return tl::unexpected{i2c.error()};
+  return run_program(options.program, i2c->environment()).map([](int code) {
+    return static_cast<Exit>(code);
+  });
+}
 
 Exit exec(const Options& options) {
   if (options.nodes.empty()) {
@@ -48,10 +76,14 @@ Exit exec(const Options& options) {
   }
   auto bus = morap::read_bus(options.nodes);
   if (!bus) return report(bus.error());
-  const auto i2c = VirtualI2c::open(*std::move(bus), options.number);
-  if (!i2c) return report(i2c.error());
-  const auto code = run_program(options.program, i2c->environment());
-  return code ? static_cast<Exit>(*code) : report(code.error());
+  if (!options.wants_check) {
+    const auto ended = run_on(*std::move(bus), options, {});
+    return ended ? *ended : report(ended.error());
+  }
+  const auto check = BusCheck::make("morap");
+  if (!check) return report(check.error());
+  const auto ended = run_on(*std::move(bus), options, (*check)->listener());
+  return ended ? conclude((*check)->finish(), options, *ended) : report(ended.error());
 }
 
 }  // namespace
@@ -66,6 +98,8 @@ void add_lab(CLI::App& app, Action& action) {
   command->add_option("--bus", options->number, "its number, 0 to 255 (default: 1)")
       ->type_name("N")
       ->check(CLI::Range(0, 255));
+  auto* check = command->add_flag("--check", options->wants_check, "judge the program");
+  for (auto* file : add_report_files(*command, options->files)) file->needs(check);
   command->add_option("PROGRAM", options->program, "and its arguments, behind --")->type_name("");
   command->callback([options, &action] { action = [options] { return exec(*options); }; });
 }

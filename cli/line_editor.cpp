@@ -64,7 +64,8 @@ class LineEditor::Editor {
     ::el_set(line_, EL_EDITOR, "emacs");
     ::el_set(line_, EL_HIST, ::history, history_);
     ::el_set(line_, EL_GETCFN, &Editor::read_key);
-    ::el_set(line_, EL_ADDFN, "armjig-complete", "completes a word", &Editor::complete_word);
+    // Of narrow names libedit keeps copies that it never gives back.
+    ::el_wset(line_, EL_ADDFN, L"armjig-complete", L"completes a word", &Editor::complete_word);
     ::el_set(line_, EL_BIND, "^I", "armjig-complete", nullptr);
     HistEvent event{};
     ::history(history_, &event, H_SETSIZE, kHistorySize);

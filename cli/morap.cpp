@@ -99,6 +99,10 @@ Exit tune(const Options& options) {
 Exit program(const Options& options) {
   const auto set = read_parameters(options.file);
   if (!set) return report(set.error());
+  if (!is_safe(*set)) {
+    return report(
+        {ErrorCode::kBadValue, options.file, std::string{describe(ProgramOutcome::kUnsafe)}});
+  }
   return with_disabled_joint(options, [&set](Joint& joint) { return joint.program(*set); });
 }
 

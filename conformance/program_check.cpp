@@ -156,6 +156,18 @@ std::unique_ptr<HostedServer> ProgramCheck::watch(std::unique_ptr<HostedServer> 
   return std::make_unique<OverheardServer>(*this, std::move(server));
 }
 
+void ProgramCheck::to_device(Instant time, Bytes bytes) {
+  now_ = time;
+  checker_->to_device(time, bytes);
+  take_offences();
+}
+
+void ProgramCheck::from_device(Instant time, Bytes bytes) {
+  now_ = time;
+  checker_->from_device(time, bytes);
+  take_offences();
+}
+
 void ProgramCheck::take_offences() {
   for (auto& offence : checker_->take_offences()) {
     auto& record = records_[offence.requirement];

@@ -38,6 +38,11 @@ class ProgramCheck {
   [[nodiscard]] std::unique_ptr<HostedStream> watch(std::unique_ptr<HostedStream> device);
   [[nodiscard]] std::unique_ptr<HostedServer> watch(std::unique_ptr<HostedServer> server);
 
+  /// What passed on a link that is no byte stream, in the order of time; as much at a time as the
+  /// checker of the device wants to see.
+  void to_device(Instant time, Bytes bytes);
+  void from_device(Instant time, Bytes bytes);
+
   /// Ends the session: a row for each requirement, in the order of the catalogue.
   [[nodiscard]] Report finish();
 

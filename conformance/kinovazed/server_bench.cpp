@@ -332,8 +332,10 @@ std::optional<Heard> ServerBench::next_beat(Instant after, Duration within) {
   return beat;
 }
 
-Heard ServerBench::await_beat() {
-  const auto beat = next_beat(now(), kBeatTime + noise_);
+Heard ServerBench::await_beat() { return await_beat_behind(now()); }
+
+Heard ServerBench::await_beat_behind(Instant time) {
+  const auto beat = next_beat(time, kBeatTime + noise_);
   if (!beat) fail_by_silence(behind("a heartbeat"), silence_of(kBeatTime));
   return beat.value_or(Heard{now()});
 }

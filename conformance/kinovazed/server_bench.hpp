@@ -99,6 +99,8 @@ class ServerBench final : public Bench {
   // Beats.
   /// The next beat, or what time it is if none comes.
   Heard await_beat();
+  /// The same of beats that came later than that.
+  Heard await_beat_behind(Instant time);
   /// The next beat that cannot be from before now.
   void expect_beat(int flags);
   /// Beats that come from now on, for so long.

@@ -236,6 +236,7 @@ void NodeBench::bring_to(std::size_t start) {
     prepare(kCalibrationUnknown);
     prepare(kDefaultControllers);
     settle();
+    if (subject_.is_real) rest();
     return prepare(kCalibrateZero);
   }
   if (start == kProgrammable) keep_sets();
@@ -248,11 +249,11 @@ void NodeBench::bring_to(std::size_t start) {
   if (start != kUncalibrated) prepare(kCalibrateZero);
 }
 
-/// A shaft that was driven before comes to rest.
+/// A shaft that was driven before comes to rest. One with little friction coasts for long.
 void NodeBench::rest() {
-  constexpr int kMostTries = 400;
+  const auto deadline = now() + 30s;
   float before = number(kReadAngle);
-  for (int i = 0; i < kMostTries && !is_deaf(); ++i) {
+  while (now() < deadline && !is_deaf()) {
     settle();
     if (const float now = number(kReadAngle); std::exchange(before, now) == now) return;
   }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <stop_token>
 #include <utility>
+#include <vector>
 
 namespace armjig {
 namespace {
@@ -104,6 +105,49 @@ void take_answer(const SmbusFrame& frame, std::uint32_t size, i2c_smbus_data& da
   }
 }
 
+/// The bus of one transaction, overheard.
+class OverheardBus final : public BusPort {
+ public:
+  OverheardBus(BusPort& port, const BusListener& listener) : port_{port}, listener_{listener} {}
+
+  Result<Ack> start(BusAddress address, Access access) override {
+    tell();
+    const auto answer = port_.start(address, access);
+    const auto direction = access == Access::kRead ? 1U : 0U;
+    if (answer == Ack::kAck) {
+      message_.push_back(static_cast<std::byte>(unsigned{address.value} << 1U | direction));
+    }
+    return answer;
+  }
+  Result<Ack> write(std::byte byte) override {
+    const auto answer = port_.write(byte);
+    if (answer == Ack::kAck) message_.push_back(byte);
+    return answer;
+  }
+  Result<std::byte> read(Ack reply) override {
+    const auto byte = port_.read(reply);
+    if (byte) message_.push_back(*byte);
+    return byte;
+  }
+  Result<void> stop() override {
+    const auto stopped = port_.stop();
+    tell();
+    return stopped;
+  }
+  void wait_until(Instant time) override { port_.wait_until(time); }
+  [[nodiscard]] Instant now() const override { return port_.now(); }
+
+ private:
+  void tell() {
+    if (!message_.empty()) listener_(now(), message_);
+    message_.clear();
+  }
+
+  BusPort& port_;
+  const BusListener& listener_;
+  std::vector<std::byte> message_;
+};
+
 int error_of(const Result<Transfer>& result) {
   if (!result) return result.error().code == ErrorCode::kTimedOut ? ETIMEDOUT : EAGAIN;
   switch (*result) {
@@ -119,14 +163,16 @@ int error_of(const Result<Transfer>& result) {
 
 }  // namespace
 
-I2cAdapter::I2cAdapter(i2c::Bus bus)
+I2cAdapter::I2cAdapter(i2c::Bus bus, BusListener listener)
     : port_{std::move(bus), kPatience},
+      listener_{std::move(listener)},
       keeper_{[this](const std::stop_token& stop) { keep_up(stop); }} {}
 
 int I2cAdapter::transfer(std::span<const BusMessage> messages) {
   const std::lock_guard lock{guard_};
   port_.wait_until(clock_.virtual_time(PacedClock::Wall::now()));
-  const auto result = port_.transfer(messages);
+  const auto result =
+      listener_ ? OverheardBus{port_, listener_}.transfer(messages) : port_.transfer(messages);
   std::this_thread::sleep_until(clock_.wall_time(port_.now(), PacedClock::Wall::now()));
   return error_of(result);
 }

@@ -4,15 +4,23 @@
 #include <linux/i2c.h>
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <thread>
 
 #include "emulators/host/paced_clock.hpp"
 #include "emulators/i2c/bus.hpp"
+#include "harness/core/bytes.hpp"
+#include "harness/core/time.hpp"
 #include "harness/link/emulated_bus_port.hpp"
 
 namespace armjig {
+
+/// Is told of every message that somebody on a bus acknowledged, when it is over: the byte with
+/// address and direction, then the data bytes that were acknowledged. Bytes until it returns. It
+/// may be called from any thread, one call at a time; times never decrease.
+using BusListener = std::function<void(Instant time, Bytes message)>;
 
 /// An emulated bus as the kernel would show it: transactions and SMBus commands in, error numbers
 /// out. It lives on the wall clock; a transaction takes as long as its bits do. All functions may
@@ -27,7 +35,8 @@ class I2cAdapter {
   /// How long a device may hold the clock.
   static constexpr Duration kPatience = std::chrono::seconds{1};
 
-  explicit I2cAdapter(i2c::Bus bus);
+  /// An empty listener hears nothing.
+  explicit I2cAdapter(i2c::Bus bus, BusListener listener = {});
 
   /// 0 or an error number: `ENXIO` for a refused address, `EIO` for a refused byte, `EAGAIN` for
   /// lost arbitration or a line that is held, `ETIMEDOUT`.
@@ -44,6 +53,7 @@ class I2cAdapter {
   std::mutex guard_;
   PacedClock clock_{1.0, PacedClock::Wall::now()};
   EmulatedBusPort<i2c::Bus> port_;
+  BusListener listener_;
   std::jthread keeper_;  ///< lets the devices live while nobody talks to them
 };
 

@@ -263,8 +263,8 @@ bool make_node(const std::string& file) {
 
 class VirtualI2c::Bed {
  public:
-  Bed(i2c::Bus bus, int number)
-      : adapter_{std::move(bus)},
+  Bed(i2c::Bus bus, int number, BusListener listener)
+      : adapter_{std::move(bus), std::move(listener)},
         path_{fmt::format("/dev/i2c-{}", number)},
         bed_{umockdev_testbed_new()},
         calls_{umockdev_ioctl_base_new()} {
@@ -298,8 +298,8 @@ class VirtualI2c::Bed {
   Ref<UMockdevIoctlBase> calls_;
 };
 
-Outcome<VirtualI2c> VirtualI2c::open(i2c::Bus bus, int number) {
-  auto bed = std::make_unique<Bed>(std::move(bus), number);
+Outcome<VirtualI2c> VirtualI2c::open(i2c::Bus bus, int number, BusListener listener) {
+  auto bed = std::make_unique<Bed>(std::move(bus), number, std::move(listener));
   if (const auto plugged = bed->plug_in(); !plugged) return tl::unexpected{plugged.error()};
   return VirtualI2c{std::move(bed)};
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "emulators/host/i2c_adapter.hpp"
 #include "emulators/i2c/bus.hpp"
 #include "harness/core/error.hpp"
 
@@ -16,7 +17,8 @@ namespace armjig {
 class VirtualI2c {
  public:
   /// Problems: `kSystem` if the test bed cannot be made.
-  [[nodiscard]] static Outcome<VirtualI2c> open(i2c::Bus bus, int number);
+  [[nodiscard]] static Outcome<VirtualI2c> open(i2c::Bus bus, int number,
+                                                BusListener listener = {});
   VirtualI2c(VirtualI2c&&) noexcept;
   VirtualI2c& operator=(VirtualI2c&&) noexcept;
   VirtualI2c(const VirtualI2c&) = delete;

@@ -23,6 +23,8 @@ using Json = nlohmann::json;
 /// Numbers in traces are whole; this keeps sums with them inside 64 bits.
 constexpr std::int64_t kLatestMicroseconds = INT64_C(9'000'000'000'000'000);
 
+constexpr std::int64_t kLastBusAddress = 0x7F;
+
 /// The value of an optional key, in the type that the format gives it. What has another type makes
 /// `ok` false.
 class LineReader {
@@ -102,8 +104,13 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
              : Duration{std::chrono::microseconds{reader.integer("t_us", 0, kLatestMicroseconds)}});
   event.dir = reader.text(dir);
   event.bytes = reader.bytes("hex");
-  const auto* const id = json.contains("conn") ? "conn" : "id";
-  event.id = static_cast<std::uint32_t>(reader.integer(id, 0, UINT32_MAX));
+  if (json.contains("addr")) {
+    event.id = static_cast<std::uint32_t>(reader.integer("addr", 0, kLastBusAddress));
+    event.text = reader.text("ack");
+  } else {
+    const auto* const id = json.contains("conn") ? "conn" : "id";
+    event.id = static_cast<std::uint32_t>(reader.integer(id, 0, UINT32_MAX));
+  }
   event.name = reader.text("name");
   if (json.contains("value") && json["value"].is_number_integer()) {
     event.value = reader.integer("value", INT64_MIN, INT64_MAX);
@@ -210,6 +217,18 @@ Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& pa
     std::sort(files.begin() + first, files.end());
   }
   return files;
+}
+
+std::vector<std::byte> bus_message_of(const TraceEvent& event) {
+  const bool is_read = event.dir == "read";
+  const bool is_there = (is_read || event.dir == "write") && event.text.starts_with('A');
+  if (!is_there) return {};
+  std::vector<std::byte> message{static_cast<std::byte>(event.id << 1U | (is_read ? 1U : 0U))};
+  for (std::size_t i = 0; i < event.bytes.size(); ++i) {
+    const bool is_taken = is_read || (i + 1 < event.text.size() && event.text[i + 1] == 'A');
+    if (is_taken) message.push_back(event.bytes[i]);
+  }
+  return message;
 }
 
 std::optional<TraceDifference> first_difference(const std::vector<TraceEvent>& expected,

@@ -20,7 +20,7 @@ struct TraceEvent {
   Instant time{};
   std::string dir;  ///< `to_device`, `from_device`, `write`, ...: what happened
   std::vector<std::byte> bytes;
-  std::uint32_t id{};  ///< of a CAN frame, or the number of a connection
+  std::uint32_t id{};  ///< of a CAN frame, the number of a connection, or the address on a bus
   std::string name;    ///< of an input
   std::int64_t value{};
   std::string text;  ///< what bytes do not say, for comparison: acknowledgements, lamps
@@ -44,6 +44,10 @@ struct Trace {
 /// The files named `*.jsonl` under each of `paths`, sorted within each; a path that is a file is
 /// taken whatever its name.
 [[nodiscard]] Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& paths);
+
+/// What was acknowledged of a `write` or `read` on a bus: the byte with address and direction, then
+/// the data bytes. Empty if the address was not, and for any other event.
+[[nodiscard]] std::vector<std::byte> bus_message_of(const TraceEvent& event);
 
 /// Where what an emulator did first departs from what was recorded.
 struct TraceDifference {

@@ -18,10 +18,25 @@ NODES = """
 id = 1
 [[node]]
 id = 2
+[[node]]
+id = 3
+motor = "dcx22l"
+[[node]]
+id = 3
+motor = "dcx26l"
 [[pen]]
+[[thermometer]]
+address = 0x18
 [[thermometer]]
 address = 0x48
 celsius = 21.5
+"""
+PARAMETERS = """
+controller = "position"
+rate_hz = {}
+d = [1.0]
+c = [1.0]
+f = [0.0]
 """
 TWO_FILES = """
 import fcntl, os
@@ -49,11 +64,21 @@ print("arrived" if abs(angle() - 0.5) <= 0.01 else angle())
 """
 
 
-def rows():
+def program(file, node):
+    return [ARMJIG, "morap", "program", str(file), "--target", "i2c:/dev/i2c-1", "--node", str(node),
+            "--allow", "program"]
+
+
+def rows(folder):
+    good, fast, forbidden = (folder / name for name in ("good.toml", "fast.toml", "forbidden"))
+    good.write_text(PARAMETERS.format(200))
+    fast.write_text(PARAMETERS.format(2000))
+    forbidden.touch(mode=0o000)
+    no_root = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"] if os.geteuid() == 0 else []
     return [
-        (["i2cdetect", "-y", "1"], 0, ["10: -- 11 12 --", "-- 19 --", "40: -- -- -- -- -- -- -- -- 48"]),
-        (["i2cdetect", "-y", "-r", "1"], 0, ["10: -- 11 12 --"]),
-        (["i2cdetect", "-y", "-q", "1"], 0, ["10: -- 11 12 --"]),
+        (["i2cdetect", "-y", "1"], 0, ["10: -- 11 12 13 --", "18 19 --", "40: -- -- -- -- -- -- -- -- 48"]),
+        (["i2cdetect", "-y", "-r", "1"], 0, ["10: -- 11 12 13 --"]),
+        (["i2cdetect", "-y", "-q", "1"], 0, ["10: -- 11 12 13 --"]),
         (["i2cdetect", "-l"], 0, ["i2c-1", "armjig emulated bus"]),
         (["i2cdetect", "-F", "1"], 0, ["I2C                              yes"]),
         (["i2ctransfer", "-y", "1", "w1@0x12", "0x83", "r1@0x12"], 0, ["0x03"]),
@@ -81,7 +106,20 @@ def rows():
          ["!--allow move"]),
         ([ARMJIG, "morap", "tune", "--type", "pd", "--inertia", "0.2", "--pole", "-9", "--target",
           "i2c:/dev/i2c-1", "--node", "2", "--allow", "program"], 0, ["rate_hz = 400"]),
+        # Two motors with one identifier: both accept, and what is read is a mixture.
+        ([ARMJIG, "morap", "tune", "--type", "pd", "--inertia", "0.2", "--pole", "-9", "--target",
+          "i2c:/dev/i2c-1", "--node", "3", "--allow", "program"], 1, ["!node 3: accepted, but"]),
+        (program(good, 2), 0, ["rate_hz = 200"]),
+        (program(good, 5), 3, ["!0x15"]),
+        (program(good, 8), 1, ["!0x18: a byte was not acknowledged"]),
+        (program(fast, 2), 2, ["!fast.toml", "!1500 Hz"]),
+        (program(folder / "none.toml", 2), 2, ["!none.toml"]),
+        ([*no_root, ARMJIG, "i2c", "scan", "--target", f"i2c:{forbidden}"], 3,
+         ["!permission denied", "!usermod -aG i2c"]),
         ([ARMJIG, "morap", "read-params", "--target", "i2c:/dev/i2c-1", "--node", "5"], 3, ["!0x15"]),
+        *(([ARMJIG, "conformance", "morap", "--target", "i2c:/dev/i2c-1", "--tier", "quick", "--allow",
+            "all", "--filter", f"morap.{topic}"], 0, [" passed, 0 failed"])
+          for topic in ("read.", "program.", "motion.speed", "motion.current")),
         (["sh", "-c", "exit 42"], 42, []),
         (["sh", "-c", "kill -TERM $$"], 128 + 15, []),
         (["no-such-program"], 3, ["!no-such-program"]),
@@ -106,7 +144,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         nodes = pathlib.Path(folder) / "nodes.toml"
         nodes.write_text(NODES)
-        results = [check(row, nodes) for row in rows()]
+        results = [check(row, nodes) for row in rows(pathlib.Path(folder))]
     print(f"{sum(results)} of {len(results)} rows as wanted")
     return 0 if all(results) else 1
 

@@ -249,7 +249,8 @@ void list_words(std::vector<NamedFault>& all) {
   for (const auto word : kObjectiveNames) {
     all.push_back({fmt::format("deaf:{}", word), "Objectives"});
   }
-  for (const auto& path : published_objectives().paths()) {
+  const auto objectives = published_objectives();
+  for (const auto& path : objectives.paths()) {
     if (path.points.size() < 2) continue;
     all.push_back({fmt::format("first-point:{}", to_string(path.objective)), "Objectives"});
   }

@@ -2,25 +2,30 @@
 #include "harness/drive/morap/joint.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 namespace armjig::morap {
 namespace {
 
 constexpr std::uint16_t kHighestRate = 1500;  // Hz; beyond it a node has no time left
 
-bool is_safe(const ControllerSet& set) noexcept {
-  const auto has_some = [](const Coefficients& filter) {
-    return filter.count >= 1 && filter.count <= kMostCoefficients;
-  };
-  return has_some(set.d) && has_some(set.c) && has_some(set.f) && set.rate_hz >= 1 &&
-         set.rate_hz <= kHighestRate;
-}
-
 ControllerKind kind_of(TuneKind kind) noexcept {
   return kind == TuneKind::kPiSpeed ? ControllerKind::kSpeed : ControllerKind::kPosition;
 }
 
 }  // namespace
+
+bool is_safe(const ControllerSet& set) noexcept {
+  const auto is_sound = [](const Coefficients& filter) {
+    const auto count = std::size_t{filter.count};
+    return count >= 1 && count <= kMostCoefficients &&
+           std::all_of(filter.values.begin(), filter.values.begin() + count,
+                       [](float value) { return std::isfinite(value); });
+  };
+  return is_sound(set.d) && is_sound(set.c) && is_sound(set.f) && std::isfinite(set.integral) &&
+         set.rate_hz >= 1 && set.rate_hz <= kHighestRate;
+}
 
 std::string_view describe(ProgramOutcome outcome) noexcept {
   switch (outcome) {
@@ -29,7 +34,8 @@ std::string_view describe(ProgramOutcome outcome) noexcept {
     case ProgramOutcome::kBusFailed:
       return "the bus failed";
     case ProgramOutcome::kUnsafe:
-      return "the node must not run such a set: counts are 1 to 4, the rate is 1 to 1500 Hz";
+      return "the node must not run such a set: counts are 1 to 4, the rate is 1 to 1500 Hz, "
+             "coefficients are finite";
     case ProgramOutcome::kNotReset:
       return "the programming status does not go back to nothing";
     case ProgramOutcome::kRefused:

@@ -31,13 +31,16 @@ struct Reading {
 enum class ProgramOutcome : std::uint8_t {
   kDone,       ///< accepted, active and read back byte for byte
   kBusFailed,  ///< `ProgramResult::code` says how
-  kUnsafe,     ///< nothing was sent: a count not 1 to 4, or a rate not 1 to 1500 Hz
+  kUnsafe,     ///< nothing was sent: `is_safe` says no
   kNotReset,   ///< the programming status could not be brought to "nothing"
   kRefused,    ///< by the node
   kNotActive,  ///< accepted, but what is read back is something else
 };
 
 [[nodiscard]] std::string_view describe(ProgramOutcome outcome) noexcept;
+
+/// Whether a node may run a set: counts are 1 to 4, the rate is 1 to 1500 Hz, all else is finite.
+[[nodiscard]] bool is_safe(const ControllerSet& set) noexcept;
 
 struct ProgramResult {
   ProgramOutcome outcome{};

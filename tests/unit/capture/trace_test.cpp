@@ -58,6 +58,24 @@ TEST(Trace, ReadsHeaderAndEvents) {
   EXPECT_TRUE(trace->events[3].bytes.empty());
 }
 
+TEST(Trace, KnowsWhatWasAcknowledgedOnABus) {  // captures/morap has such lines
+  const auto trace = parse(R"({"t_us":0,"op":"write","addr":18,"hex":"0102","ack":"AAA"}
+{"t_us":300,"op":"read","addr":18,"n":2,"hex":"aabb","ack":"A"}
+{"t_us":600,"op":"write","addr":72,"hex":"090a","ack":"ANA"}
+{"t_us":900,"op":"write","addr":19,"hex":"01","ack":"N"}
+{"t_us":900,"op":"read","addr":19,"n":1,"hex":"","ack":"N"}
+{"t_us":900,"op":"advance","to_us":1000}
+)");
+  ASSERT_TRUE(trace) << describe(trace.error());
+  std::vector<std::vector<std::byte>> messages;
+  for (const auto& event : trace->events) messages.push_back(bus_message_of(event));
+  const auto none = hex("");
+  EXPECT_THAT(messages,
+              ElementsAre(hex("24 01 02"), hex("25 AA BB"), hex("90 0A"), none, none, none));
+  EXPECT_EQ(refusal(parse(R"({"t_us":0,"op":"write","addr":128,"hex":"","ack":"A"})")),
+            R"(x.jsonl:2 "addr" is not a whole number in range)");
+}
+
 TEST(Trace, ReadsTimesInMilliseconds) {  // captures/kinovazed has them
   const auto trace = parse(R"({"t_ms":12,"dir":"to_device","hex":""})");
   ASSERT_TRUE(trace);

@@ -121,6 +121,7 @@ const std::vector<Step>& steps() {
         {"emulators/morap/defects/defects.cpp", "an emulated node"},
         {"emulators/morap/defects/joint_bus.hpp", "an emulated node"},
         {"harness/drive/parol6/drive_loop.cpp", "whoever makes a loop hands it the port of a rig"},
+        {"emulators/host/i2c_adapter.cpp", "the other end: a virtual bus for other programs"},
         {"emulators/i2c/bus.cpp", "to the emulated devices on it"},
         {"emulators/i2c/bus.hpp", "to an emulated device"},
         {"emulators/kinovazed/server.cpp", "to its log"},

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -109,9 +110,42 @@ TEST_F(MorapDrive, RefusesToSendWhatANodeMustNotRun) {
   set.f.count = 5;
   EXPECT_EQ(joint_.program(set).outcome, ProgramOutcome::kUnsafe);
   set = some_set();
+  set.c.values[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(joint_.program(set).outcome, ProgramOutcome::kUnsafe);
+  set = some_set();
   set.rate_hz = 1501;
   EXPECT_EQ(joint_.program(set).outcome, ProgramOutcome::kUnsafe);
   EXPECT_EQ(port_.now(), at(0us)) << "nothing passed on the bus";
+}
+
+/// A bad line: the first coefficient of a parameter message arrives with another bit.
+class GarbledBus final : public BusPort {
+ public:
+  explicit GarbledBus(BusPort& port) : port_{port} {}
+  Result<Ack> start(BusAddress address, Access access) override {
+    count_ = 0;
+    return port_.start(address, access);
+  }
+  Result<Ack> write(std::byte byte) override {
+    constexpr int kCoefficient = 5;
+    return port_.write(count_++ == kCoefficient ? byte ^ std::byte{1} : byte);
+  }
+  Result<std::byte> read(Ack reply) override { return port_.read(reply); }
+  Result<void> stop() override { return port_.stop(); }
+  void wait_until(Instant time) override { port_.wait_until(time); }
+  [[nodiscard]] Instant now() const override { return port_.now(); }
+
+ private:
+  BusPort& port_;
+  int count_ = 0;
+};
+
+TEST_F(MorapDrive, SaysThatANodeRefusesASet) {
+  GarbledBus port{port_};
+  Master master{port};
+  Joint joint{master, joint_.address()};
+  EXPECT_EQ(joint.program(some_set()).outcome, ProgramOutcome::kRefused);
+  EXPECT_EQ(joint_.programming_status().value, ProgrammingStatus::kFailure);
 }
 
 TEST_F(MorapDrive, NoticesASetThatIsAcceptedButInstalledNowhere) {

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/host/i2c_adapter.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "emulators/host/morap_bus.hpp"
+#include "harness/core/hex.hpp"
+
+namespace armjig {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr BusAddress kNode{0x12};
+constexpr BusAddress kThermometer{0x48};
+constexpr BusAddress kNobody{0x30};
+
+i2c::Bus bus() {
+  return *morap::parse_bus("[[node]]\nid = 2\n[[thermometer]]\naddress = 0x48\n", "test");
+}
+
+/// What an adapter tells its listener.
+class I2cAdapterTest : public testing::Test {
+ protected:
+  int transfer(const std::vector<BusMessage>& messages) { return adapter.transfer(messages); }
+
+  std::vector<std::string> heard;
+  std::vector<Instant> times;
+  I2cAdapter adapter{bus(), [this](Instant time, Bytes message) {
+                       heard.push_back(to_hex(message));
+                       times.push_back(time);
+                     }};
+};
+
+TEST_F(I2cAdapterTest, TellsWhatWasAcknowledgedOfEachMessage) {
+  const auto choose = *from_hex("88");
+  std::array<std::byte, 2> answer{};
+  EXPECT_EQ(transfer({write_to(kNode, choose), read_from(kNode, answer)}), 0);
+  EXPECT_THAT(heard, ElementsAre("2488", "251212"));
+  EXPECT_LT(times[0], times[1]);
+}
+
+TEST_F(I2cAdapterTest, TellsNothingOfAnAddressWhereNobodyIs) {
+  const auto bytes = *from_hex("88");
+  EXPECT_EQ(transfer({write_to(kNobody, bytes)}), ENXIO);
+  EXPECT_THAT(heard, IsEmpty());
+}
+
+TEST_F(I2cAdapterTest, LeavesOutTheByteThatWasRefused) {
+  const auto bytes = *from_hex("09");
+  EXPECT_EQ(transfer({write_to(kThermometer, bytes)}), EIO);
+  EXPECT_THAT(heard, ElementsAre("90"));
+}
+
+TEST_F(I2cAdapterTest, TellsOfSmbusCommandsToo) {
+  i2c_smbus_data data{};
+  EXPECT_EQ(adapter.smbus(kNode, Access::kRead, 0x83, I2C_SMBUS_BYTE_DATA, data), 0);
+  EXPECT_EQ(adapter.smbus(kNode, Access::kWrite, 0, I2C_SMBUS_QUICK, data), 0);
+  EXPECT_THAT(heard, ElementsAre("2483", "2503", "24"));
+}
+
+TEST_F(I2cAdapterTest, TellsOneThingAtATimeWhoeverTalks) {
+  constexpr int kEach = 20;
+  const auto talk = [this] {
+    const auto bytes = *from_hex("83");
+    for (int i = 0; i < kEach; ++i) EXPECT_EQ(transfer({write_to(kNode, bytes)}), 0);
+  };
+  std::thread other{talk};
+  talk();
+  other.join();
+  EXPECT_EQ(heard.size(), 2U * kEach);
+  EXPECT_TRUE(std::ranges::is_sorted(times));
+}
+
+}  // namespace
+}  // namespace armjig
