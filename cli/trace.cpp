@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "emulators/replay/kinovazed_matrix.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 
@@ -17,9 +20,11 @@ constexpr auto kHelp =
     "\n"
     "  armjig trace verify captures                 all recordings below a folder\n"
     "  armjig trace verify captures/parol6/jog_max_speed_a.jsonl\n"
+    "  armjig trace verify captures/kinovazed/state-command-matrix.json\n"
     "\n"
     "Folders are searched for *.jsonl. For each file 'identical' or the first difference is\n"
-    "printed; the last line counts them.";
+    "printed; the last line counts them. A table of states and commands (*.json) is verified cell\n"
+    "by cell.";
 
 /// How often each verdict was given.
 struct Tally {
@@ -28,7 +33,25 @@ struct Tally {
   int unreadable = 0;
 };
 
+void verify_table(const std::string& path, Tally& tally) {
+  std::ifstream file{path, std::ios::binary};
+  const auto verdict =
+      kinovazed::verify_matrix(std::string{std::istreambuf_iterator<char>{file}, {}}, path);
+  if (!verdict) {
+    (void)report(verdict.error());
+    ++tally.unreadable;
+    return;
+  }
+  const bool is_identical = verdict->differences.empty();
+  ++(is_identical ? tally.identical : tally.different);
+  fmt::print("{}: {}, {} cells\n", path, is_identical ? "identical" : "different", verdict->cells);
+  for (const auto& [cell, recorded, actual] : verdict->differences) {
+    fmt::print("  {}\n    recorded {}\n    emulated {}\n", cell, recorded, actual);
+  }
+}
+
 void verify_file(const std::string& path, Tally& tally) {
+  if (path.ends_with(".json")) return verify_table(path, tally);
   const auto trace = read_trace(path);
   const auto difference = trace ? verify(*trace) : tl::unexpected{trace.error()};
   if (!difference) {

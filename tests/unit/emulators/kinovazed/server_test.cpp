@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cctype>
-#include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -20,65 +17,6 @@ using test::Bench;
 using test::documented;
 
 constexpr auto kAccepted = "Accepted\r\n";
-
-// The matrix of the recordings, all of its cells that are there.
-
-const std::string& route_to(const std::string& state) {
-  static const std::map<std::string, std::string> kRoutes{
-      {"emergencyStopped", ""}, {"poweredOff", "Q"},
-      {"initializing", "QI"},   {"idle", "Qi"},
-      {"retracting", "QiR"},    {"retracted", "Qir"},
-      {"unfolding", "QirU"},    {"settingMode", "QiM"},
-      {"steering", "Qim"},      {"runningSequence", "QiO"},
-      {"frozen", "Qif"}};
-  return kRoutes.at(state);
-}
-
-/// Capital letters do not wait for the end.
-Bench bench_in(const std::string& state) {
-  const auto route = route_to(state);
-  const bool is_initializing = state == "initializing";
-  Bench bench{{},
-              {.start_mode = is_initializing ? ArmMode::kNeverHomed : ArmMode::kReady,
-               .initialise_s = 2.5,
-               .unfold_s = 2.5,
-               .retract_s = 2.5,
-               .linear_m_s = 0.25,
-               .rotation_rad_s = 1.0}};
-  for (const char step : route) {
-    const std::map<char, std::string_view> lines{{'Q', "QuitEStop\r\n"},
-                                                 {'I', "Initialize\r\n"},
-                                                 {'R', "Retract\r\n"},
-                                                 {'U', "Unfold\r\n"},
-                                                 {'M', "SetJoystickMode:XYZ\r\n"},
-                                                 {'O', "RunObjective:SuckDoor\r\n"},
-                                                 {'F', "Freeze\r\n"}};
-    bench.send(lines.at(static_cast<char>(std::toupper(step))));
-    bench.pass(step == 'r' ? 3s : std::islower(step) != 0 ? 700ms : 100ms);
-  }
-  bench.server.clear_sent();
-  return bench;
-}
-
-TEST(KinovaServer, AnswersAsTheMatrixOfTheRecordingsSays) {
-  std::ifstream in{ARMJIG_SOURCE_DIR "/captures/kinovazed/state-command-matrix.json"};
-  const auto table = nlohmann::json::parse(in);
-  ASSERT_GT(table["entries"].size(), 80U);
-  for (const auto& cell : table["entries"]) {
-    auto bench = bench_in(cell["state"]);
-    ASSERT_EQ(to_string(bench.server.state()), cell["state"].get<std::string>());
-    bench.send(cell["command"].get<std::string>() + "\r\n");
-    bench.pass(200ms);
-    std::string replies;
-    for (const auto& reply : cell["replies"]) {
-      const auto text = reply.get<std::string>();
-      replies += text.ends_with("\r\n") ? text : text + "\r\n";
-    }
-    EXPECT_EQ(bench.heard(bench.client), replies) << cell.dump();
-    EXPECT_EQ(to_string(bench.server.state()), cell["next_state"].get<std::string>())
-        << cell.dump();
-  }
-}
 
 // Clients.
 
