@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "harness/drive/morap/joint.hpp"
 #include "harness/link/i2c_tiny_usb.hpp"
@@ -43,6 +44,7 @@ class Plugged {
   [[nodiscard]] UsbfsDevice& device() noexcept { return device_; }
   /// Whether somebody opened its bus.
   [[nodiscard]] bool is_in_use() const noexcept { return log_->delay.has_value(); }
+  [[nodiscard]] std::size_t message_count() const noexcept { return log_->requests.size(); }
 
  private:
   std::shared_ptr<TinyUsbAdapter::Log> log_ = std::make_shared<TinyUsbAdapter::Log>();
@@ -129,6 +131,22 @@ TEST_F(UsbAdapterBench, AShortTransferIsARefusedByte) {
   EXPECT_EQ(port->transfer({&read, 1}), Transfer::kByteRefused);
   const auto write = write_to(kNode, answer);
   EXPECT_EQ(port->transfer({&write, 1}), Transfer::kByteRefused);
+}
+
+TEST_F(UsbAdapterBench, AMessageThatIsTooLongForUsbIsRefusedBeforeTheFirst) {
+  const Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  std::vector<std::byte> answer(4096);
+  const auto longest = read_from(kNode, answer);
+  EXPECT_EQ(port->transfer({&longest, 1}), Transfer::kDone);
+  answer.emplace_back();
+  const auto before = adapter.message_count();
+  const std::array messages{write_to(kNode, {}), read_from(kNode, answer)};
+  const auto done = port->transfer(messages);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::kBadValue);
+  EXPECT_EQ(adapter.message_count(), before);
 }
 
 TEST_F(UsbAdapterBench, AScanFindsTheNodeBehindIt) {
