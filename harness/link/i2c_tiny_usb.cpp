@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "harness/link/transaction_bus.hpp"
@@ -23,9 +22,9 @@ constexpr std::uint16_t kReadFlag = 1;
 constexpr std::byte kAddressAcknowledged{1};
 constexpr std::byte kAddressRefused{2};
 
-constexpr std::uint16_t kHalfClockUs = 5;   // 100 kHz at most
-constexpr std::byte kPlainTransactions{1};  // in the lowest byte of what it can do
-constexpr std::size_t kLongestMessage = std::numeric_limits<std::uint16_t>::max();
+constexpr std::uint16_t kHalfClockUs = 5;      // 100 kHz at most
+constexpr std::byte kPlainTransactions{1};     // in the lowest byte of what it can do
+constexpr std::size_t kLongestMessage = 4096;  // libusb on Linux carries no more at once
 
 constexpr std::array kNumbers{UsbNumbers{0x0403, 0xC631}, UsbNumbers{0x1C40, 0x0534}};
 

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
-#include <vector>
 
 namespace armjig::testing {
 namespace {
@@ -51,26 +50,6 @@ gboolean answer(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpoint
   return TRUE;
 }
 
-std::string root_of(UMockdevTestbed* bed) {
-  gchar* text = umockdev_testbed_get_root_dir(bed);
-  std::string root = text;
-  g_free(text);
-  return root;
-}
-
-std::string add(UMockdevTestbed* bed, const char* subsystem, const std::string& name,
-                const char* parent, std::vector<const char*> attributes,
-                std::vector<const char*> properties) {
-  attributes.push_back(nullptr);
-  properties.push_back(nullptr);
-  gchar* path = umockdev_testbed_add_devicev(bed, subsystem, name.c_str(), parent,
-                                             const_cast<gchar**>(attributes.data()),
-                                             const_cast<gchar**>(properties.data()));
-  std::string added = path == nullptr ? "" : path;
-  g_free(path);
-  return added;
-}
-
 }  // namespace
 
 UsbBench::UsbBench() : bed_{umockdev_testbed_new()}, ioctls_{umockdev_ioctl_base_new()} {
@@ -83,15 +62,15 @@ UsbBench::~UsbBench() {
 }
 
 void UsbBench::plug_in(const Board& board, const std::string& terminal) {
-  const auto usb = add(bed_, "usb", "usb-of-" + board.name, nullptr,
+  const auto usb = add("usb", "usb-of-" + board.name, nullptr,
                        {"idVendor", board.vendor.c_str(), "idProduct", board.product.c_str(),
                         "manufacturer", "STMicroelectronics", "product", "PAROL6 control board",
                         "serial", board.serial_number.c_str(), "busnum", "1", "devnum", "7"},
                        {"DEVTYPE", "usb_device"});
-  const auto interface = add(bed_, "usb", "interface-of-" + board.name, usb.c_str(),
+  const auto interface = add("usb", "interface-of-" + board.name, usb.c_str(),
                              {"bInterfaceClass", "02"}, {"DEVTYPE", "usb_interface"});
   const auto node = "/dev/" + board.name;
-  const auto tty = add(bed_, "tty", board.name, interface.c_str(), {}, {"DEVNAME", node.c_str()});
+  const auto tty = add("tty", board.name, interface.c_str(), {}, {"DEVNAME", node.c_str()});
   umockdev_testbed_set_attribute_link(bed_, tty.c_str(), "device", "..");
   link(node, terminal);
   ASSERT_TRUE(umockdev_testbed_attach_ioctl(bed_, node.c_str(), ioctls_, nullptr));
@@ -104,11 +83,31 @@ void UsbBench::pull_out(const Board& board) {
   for (const auto& path : {interface + "/" + board.name, interface, usb}) {
     umockdev_testbed_remove_device(bed_, path.c_str());
   }
-  fs::remove(root_of(bed_) + "/dev/" + board.name);
+  fs::remove(root() + "/dev/" + board.name);
+}
+
+std::string UsbBench::add(const char* subsystem, const std::string& name, const char* parent,
+                          std::vector<const char*> attributes,
+                          std::vector<const char*> properties) const {
+  attributes.push_back(nullptr);
+  properties.push_back(nullptr);
+  gchar* path = umockdev_testbed_add_devicev(bed_, subsystem, name.c_str(), parent,
+                                             const_cast<gchar**>(attributes.data()),
+                                             const_cast<gchar**>(properties.data()));
+  std::string added = path == nullptr ? "" : path;
+  g_free(path);
+  return added;
+}
+
+std::string UsbBench::root() const {
+  gchar* text = umockdev_testbed_get_root_dir(bed_);
+  std::string root = text;
+  g_free(text);
+  return root;
 }
 
 void UsbBench::link(const std::string& path, const std::string& to) const {
-  const fs::path place{root_of(bed_) + path};
+  const fs::path place{root() + path};
   fs::create_directories(place.parent_path());
   fs::remove(place);
   fs::create_symlink(to, place);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace armjig::testing {
 
@@ -30,12 +31,20 @@ class UsbBench {
   void plug_in(const Board& board, const std::string& terminal);
   void pull_out(const Board& board);
 
+  /// An entry in /sys, below `parent` if that is not null; its path.
+  std::string add(const char* subsystem, const std::string& name, const char* parent,
+                  std::vector<const char*> attributes, std::vector<const char*> properties) const;
+
   /// A symbolic link on the bench, as udev rules make them.
   void link(const std::string& path, const std::string& to) const;
 
   /// The speed to which a port was set last, in baud; 0 if none was, or one of those that have a
   /// name in <termios.h>: they do not pass the bench.
   [[nodiscard]] std::uint32_t baud_of(const std::string& path) const;
+
+  [[nodiscard]] UMockdevTestbed* bed() const noexcept { return bed_; }
+  /// The folder that /sys and /dev are in.
+  [[nodiscard]] std::string root() const;
 
  private:
   UMockdevTestbed* bed_;

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+// I2C adapters on USB through the real libusb. The kernel below it is played by `UsbfsDevice`, the
+// adapter at the end of the cable by `TinyUsbAdapter`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <linux/capability.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/drive/morap/joint.hpp"
+#include "harness/link/i2c_tiny_usb.hpp"
+#include "tests/integration/support/program.hpp"
+#include "tests/testbed/usb_bench.hpp"
+#include "tests/testbed/usbfs_device.hpp"
+#include "tests/unit/link/tiny_usb_adapter.hpp"
+
+namespace armjig::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const UsbfsDevice::Identity kAdapter{2, {0x0403, 0xC631}, "7A"};
+const UsbfsDevice::Identity kTwin{3, {0x0403, 0xC631}, "7B"};
+const UsbfsDevice::Identity kCousin{2, {0x1C40, 0x0534}, "7A"};
+const UsbfsDevice::Identity kModem{2, {0x0403, 0x6001}, "A1"};
+constexpr BusAddress kNode{0x12};
+constexpr BusAddress kNobody{0x13};
+
+/// An adapter on the bench.
+class Plugged {
+ public:
+  Plugged(const UsbBench& bench, const UsbfsDevice::Identity& identity,
+          TinyUsbAdapter::Behaviour behaviour = {})
+      : adapter_{behaviour, log_}, device_{bench, identity, adapter_} {}
+
+  [[nodiscard]] UsbfsDevice& device() noexcept { return device_; }
+  /// Whether somebody opened its bus.
+  [[nodiscard]] bool is_in_use() const noexcept { return log_->delay.has_value(); }
+  [[nodiscard]] std::size_t message_count() const noexcept { return log_->requests.size(); }
+
+ private:
+  std::shared_ptr<TinyUsbAdapter::Log> log_ = std::make_shared<TinyUsbAdapter::Log>();
+  TinyUsbAdapter adapter_;
+  UsbfsDevice device_;
+};
+
+/// Takes from this thread what root may do and others may not, as long as it lives.
+class NoPrivileges {
+ public:
+  NoPrivileges() {
+    ::syscall(SYS_capget, &header_, kept_.data());
+    auto none = kept_;
+    for (auto& half : none) half.effective = 0;
+    ::syscall(SYS_capset, &header_, none.data());
+  }
+  NoPrivileges(const NoPrivileges&) = delete;
+  NoPrivileges& operator=(const NoPrivileges&) = delete;
+  ~NoPrivileges() { ::syscall(SYS_capset, &header_, kept_.data()); }
+
+ private:
+  __user_cap_header_struct header_{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> kept_{};
+};
+
+std::unique_ptr<BusPort> opened(const std::string& serial_number = "") {
+  auto port = open_i2c_tiny_usb(serial_number);
+  EXPECT_TRUE(port) << port.error().where << ": " << port.error().hint;
+  return port ? *std::move(port) : nullptr;
+}
+
+Problem problem_of_opening(const std::string& serial_number = "") {
+  const auto port = open_i2c_tiny_usb(serial_number);
+  EXPECT_FALSE(port);
+  return port ? Problem{} : port.error();
+}
+
+Result<Transfer> poke(BusPort& port, BusAddress address) {
+  const auto message = write_to(address, {});
+  return port.transfer({&message, 1});
+}
+
+ErrorCode error_of_poke(BusPort& port) {
+  const auto done = poke(port, kNode);
+  EXPECT_FALSE(done);
+  return done ? ErrorCode{} : done.error().code;
+}
+
+class UsbAdapterBench : public ::testing::Test {
+ protected:
+  UsbBench bench_;
+};
+
+TEST_F(UsbAdapterBench, CarriesWhatADriveSaysAndHears) {
+  const Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  morap::Master master{*port};
+  morap::Joint joint{master, kNode};
+  EXPECT_EQ(joint.calibrate(morap::Angle{1.0F}), morap::BusCode::kOk);
+  // captures/morap: 1 rad is 18840 counts, which read as 0.9999935
+  EXPECT_FLOAT_EQ(joint.angle().value.value, 0.9999935F);
+}
+
+TEST_F(UsbAdapterBench, KnowsBothNumbersOfTheFamily) {
+  const Plugged adapter{bench_, kCousin};
+  EXPECT_TRUE(opened());
+}
+
+TEST_F(UsbAdapterBench, TellsWhoIsNotThere) {
+  const Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  EXPECT_EQ(poke(*port, kNode), Transfer::kDone);
+  EXPECT_EQ(poke(*port, kNobody), Transfer::kAddressRefused);
+}
+
+TEST_F(UsbAdapterBench, AShortTransferIsARefusedByte) {
+  const Plugged adapter{bench_, kAdapter, {.is_cut_short = true}};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  std::array<std::byte, 4> answer{};
+  const auto read = read_from(kNode, answer);
+  EXPECT_EQ(port->transfer({&read, 1}), Transfer::kByteRefused);
+  const auto write = write_to(kNode, answer);
+  EXPECT_EQ(port->transfer({&write, 1}), Transfer::kByteRefused);
+}
+
+TEST_F(UsbAdapterBench, AMessageThatIsTooLongForUsbIsRefusedBeforeTheFirst) {
+  const Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  std::vector<std::byte> answer(4096);
+  const auto longest = read_from(kNode, answer);
+  EXPECT_EQ(port->transfer({&longest, 1}), Transfer::kDone);
+  answer.emplace_back();
+  const auto before = adapter.message_count();
+  const std::array messages{write_to(kNode, {}), read_from(kNode, answer)};
+  const auto done = port->transfer(messages);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::kBadValue);
+  EXPECT_EQ(adapter.message_count(), before);
+}
+
+TEST_F(UsbAdapterBench, AScanFindsTheNodeBehindIt) {
+  const Plugged adapter{bench_, kAdapter};
+  Program program{{"i2c", "scan", "--target", "i2c-tiny-usb:"}};
+  EXPECT_EQ(program.read_line(), "0x12  MORAP node 2");
+  EXPECT_EQ(program.wait(), 0) << program.read_errors();
+}
+
+TEST_F(UsbAdapterBench, IsNotFoundWhereNoneIsPluggedIn) {
+  const auto problem = problem_of_opening();
+  EXPECT_EQ(problem.code, ErrorCode::kNotFound);
+  EXPECT_EQ(problem.where, "i2c-tiny-usb:");
+}
+
+TEST_F(UsbAdapterBench, LeavesOtherDevicesAlone) {
+  const Plugged modem{bench_, kModem};
+  EXPECT_EQ(problem_of_opening().code, ErrorCode::kNotFound);
+}
+
+TEST_F(UsbAdapterBench, ASecondOneMakesTheUserChoose) {
+  const Plugged adapter{bench_, kAdapter};
+  const Plugged twin{bench_, kTwin};
+  const auto problem = problem_of_opening();
+  EXPECT_EQ(problem.code, ErrorCode::kBadTarget);
+  EXPECT_THAT(problem.hint, AllOf(HasSubstr("'7A'"), HasSubstr("'7B'")));
+  EXPECT_FALSE(adapter.is_in_use() || twin.is_in_use());
+}
+
+TEST_F(UsbAdapterBench, ASerialNumberChooses) {
+  const Plugged adapter{bench_, kAdapter};
+  const Plugged twin{bench_, kTwin};
+  EXPECT_TRUE(opened("7B"));
+  EXPECT_TRUE(twin.is_in_use());
+  EXPECT_FALSE(adapter.is_in_use());
+}
+
+TEST_F(UsbAdapterBench, AnotherSerialNumberIsNotFound) {
+  const Plugged adapter{bench_, kAdapter};
+  EXPECT_EQ(problem_of_opening("7").code, ErrorCode::kNotFound);
+}
+
+TEST_F(UsbAdapterBench, HasOneProgramAtATime) {
+  const Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  const auto problem = problem_of_opening();
+  EXPECT_EQ(problem.code, ErrorCode::kBusy);
+  EXPECT_THAT(problem.hint, HasSubstr("rmmod i2c-tiny-usb"));
+}
+
+TEST_F(UsbAdapterBench, SaysThatAUdevRuleIsMissing) {
+  Plugged adapter{bench_, kAdapter};
+  ASSERT_EQ(::chmod(adapter.device().file().c_str(), S_ISVTX), 0);
+  const NoPrivileges like_everybody;
+  const auto problem = problem_of_opening();
+  EXPECT_EQ(problem.code, ErrorCode::kNoPermission);
+  EXPECT_THAT(problem.hint, HasSubstr("udev rule"));
+}
+
+TEST_F(UsbAdapterBench, RefusesADeviceThatIsNoSuchAdapter) {
+  const Plugged adapter{bench_, kAdapter, {.functions = std::byte{}}};
+  EXPECT_EQ(problem_of_opening().code, ErrorCode::kUnsupported);
+}
+
+TEST_F(UsbAdapterBench, ARequestThatItStallsIsUnsupported) {
+  Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  adapter.device().end_transfers_with(EPIPE);
+  EXPECT_EQ(error_of_poke(*port), ErrorCode::kUnsupported);
+  adapter.device().end_transfers_with(0);
+  EXPECT_EQ(poke(*port, kNode), Transfer::kDone);
+}
+
+TEST_F(UsbAdapterBench, PulledOutBetweenTransfersItIsDisconnected) {
+  Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  adapter.device().pull_out();
+  EXPECT_EQ(error_of_poke(*port), ErrorCode::kDisconnected);
+  EXPECT_EQ(problem_of_opening().code, ErrorCode::kNotFound);
+}
+
+TEST_F(UsbAdapterBench, PulledOutDuringATransferItIsDisconnected) {
+  Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  // The host notices the silence of the device first, its hub that it is gone a moment later.
+  for (const int error : {EPROTO, ESHUTDOWN}) {
+    adapter.device().end_transfers_with(error);
+    EXPECT_EQ(error_of_poke(*port), ErrorCode::kDisconnected) << error;
+  }
+}
+
+TEST_F(UsbAdapterBench, ATransferThatDoesNotEndIsTakenBack) {
+  Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  adapter.device().fall_silent();
+  EXPECT_EQ(error_of_poke(*port), ErrorCode::kTimedOut);
+}
+
+}  // namespace
+}  // namespace armjig::testing
