@@ -5,7 +5,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "harness/link/tcp_session.hpp"
@@ -127,60 +126,6 @@ TEST(HostedKinova, RefusesConnectionsWhenDeadAndComesBack) {
   while (!session->connect(session->now() + 1s) && session->now() < deadline) {
   }
   EXPECT_LT(session->now(), deadline);
-  fs::remove(file);
-}
-
-/// The pose that a log line shows.
-nlohmann::json logged_pose(const std::string& log, const char* frame) {
-  const auto begin = log.find('{', log.find(frame));
-  if (begin == std::string::npos) return {};
-  return nlohmann::json::parse(log.substr(begin, log.find('}', begin) + 1 - begin));
-}
-
-/// The document's how-to "Change Objectives": choose one, drive to where its way-point shall be,
-/// ask for the position, paste the line of the log into the file, start the server again.
-TEST(HostedKinova, HasItsObjectivesChangedAsTheDocumentTells) {
-  const auto file = fs::temp_directory_path() / ("armjig-home-" + std::to_string(::getpid()));
-  const auto save = [&](const nlohmann::json& point) {
-    const nlohmann::json zero{{"X", 0}, {"Y", 0}, {"Z", 0}, {"pitch", 0}, {"yaw", 0}, {"roll", 0}};
-    std::ofstream{file} << nlohmann::json::array(
-        {{{"name", "Home"}, {"is_abs", true}, {"origin", zero}, {"sequence", {point}}}});
-  };
-  save({{"X", 0.05}, {"Y", -0.33}, {"Z", 0.47}, {"pitch", 1.7}, {"yaw", -0.14}, {"roll", -0.11}});
-  nlohmann::json taught;
-  {
-    Program program{emulate({"--set", "objectives=" + file.string()})};
-    Client client{program.read_line()};
-    client.send("QuitEStop\r\nInitialize\r\n");
-    client.hear(3);
-    client.send("SetActiveObjective:Home\r\nSetJoystickMode:XYZ\r\n");
-    client.hear(2);
-    client.send("MoveJoystick:0:-400:0\r\n");  // back, for a second of its time
-    client.hear(1);
-    client.beat();
-    client.send("MoveJoystick:0:0:0\r\nGetObjectivePosition\r\nGetAbsolutePosition\r\nEStop\r\n");
-    EXPECT_EQ(client.hear(2), "Accepted\r\nAccepted\r\n") << "the console commands answer nothing";
-    program.signal(SIGTERM);
-    const auto log = program.read_errors();
-    taught = logged_pose(log, "(obj)");
-    ASSERT_EQ(taught.size(), 6U) << log;
-    EXPECT_NEAR(taught["Y"].get<double>(), logged_pose(log, "(abs)")["Y"].get<double>(), 1e-3)
-        << "the frame of Home is that of the arm";
-  }
-  save(taught);
-  Program program{emulate({"--set", "objectives=" + file.string()})};
-  Client client{program.read_line()};
-  client.send("QuitEStop\r\nInitialize\r\n");
-  client.hear(3);
-  client.send("RunObjective:Home\r\n");
-  EXPECT_EQ(client.hear(2), "Accepted\r\nObjectiveDone\r\n");
-  client.send("GetAbsolutePosition\r\nEStop\r\n");
-  client.hear(1);
-  program.signal(SIGTERM);
-  const auto reached = logged_pose(program.read_errors(), "(abs)");
-  for (const auto* axis : {"X", "Y", "Z"}) {
-    EXPECT_NEAR(reached[axis].get<double>(), taught[axis].get<double>(), 0.06) << axis;
-  }
   fs::remove(file);
 }
 
