@@ -96,6 +96,9 @@ TEST(Emulate, TakesOverTheLinkOfOneThatWasKilled) {
     EXPECT_EQ(killed.wait(), -SIGKILL);
   }
   ASSERT_TRUE(fs::is_symlink(link_path()));
+  // By now the number of its terminal may be somebody else's, whose link would not be taken.
+  fs::remove(link_path());
+  fs::create_symlink("/dev/pts/99999", link_path());
   Program program{{"emulate", "demo", "--link", link_path()}};
   (void)program.read_line();
   const auto port = open_pty(link_path());
