@@ -6,14 +6,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/device_inputs.hpp"
 #include "cli/emulate_bus.hpp"
 #include "cli/program_judge.hpp"
-#include "cli/server_inputs.hpp"
 #include "conformance/program_check.hpp"
 #include "emulators/host/buses.hpp"
 #include "emulators/host/devices.hpp"
@@ -37,8 +38,8 @@ constexpr auto kHelp =
     "  armjig emulate kinovazed --tcp 0 --set objectives=my.json\n"
     "  armjig emulate kinovazed --check             the same for its clients\n"
     "\n"
-    "Lines on standard input do to a server what no client can, such as 'arm.plugged 0'; 'help'\n"
-    "lists them.\n"
+    "Lines on standard input do to a board or server what no client can, such as 'estop 0' or\n"
+    "'arm.plugged 0'; 'help' lists them.\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
@@ -137,6 +138,21 @@ Exit conclude(Check& check, const Options& options) {
   return static_cast<Exit>(conclusion_of(result));
 }
 
+/// Until it is stopped. Lines on standard input set `inputs`.
+template <class AnyHost>
+void run(AnyHost& host, std::span<const DeviceInput> inputs) {
+  {
+    std::optional<DeviceInputs> by_hand;
+    if (!inputs.empty()) {
+      by_hand.emplace(inputs, [&host](auto name, auto value, auto tell) {
+        host.set_input(std::move(name), value, std::move(tell));
+      });
+    }
+    host.run();
+  }
+  print_statistics(host.statistics());
+}
+
 Exit emulate_server(const ServerEntry& entry, const Options& options,
                     const DeviceOptions& settings) {
   if (options.wants_pty || !options.pty.link.empty()) {
@@ -147,7 +163,6 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
   const bool takes_inputs = has_standard_input();
   auto server = entry.make(settings, options.device);
   if (!server) return report(server.error());
-  const auto inputs = (*server)->inputs();
   std::unique_ptr<ProgramCheck> check;
   if (options.wants_check) {
     auto made = make_check(options);
@@ -162,11 +177,7 @@ Exit emulate_server(const ServerEntry& entry, const Options& options,
   auto host = SessionHost::open(std::move(*server), host_options);
   if (!host) return report(host.error());
   announce(options, {host->target()});
-  std::optional<ServerInputs> by_hand;
-  if (takes_inputs) by_hand.emplace(*host, inputs);
-  host->run();
-  by_hand.reset();
-  print_statistics(host->statistics());
+  run(*host, takes_inputs ? entry.inputs() : std::span<const DeviceInput>{});
   return check ? conclude(*check, options) : Exit::kPassed;
 }
 
@@ -194,6 +205,7 @@ Exit emulate(const Options& options) {
   for (const auto& entry : hosted_servers()) {
     if (entry.device == options.device) return emulate_server(entry, options, *settings);
   }
+  const bool takes_inputs = has_standard_input();
   auto device = make_hosted_device(options.device, *settings);
   if (!device) return report(device.error());
   std::unique_ptr<ProgramCheck> check;
@@ -206,8 +218,8 @@ Exit emulate(const Options& options) {
   auto host = Host::open(std::move(*device), host_options(options));
   if (!host) return report(host.error());
   announce(options, host->targets());
-  host->run();
-  print_statistics(host->statistics());
+  run(*host,
+      takes_inputs ? hosted_device(options.device).inputs() : std::span<const DeviceInput>{});
   return check ? conclude(*check, options) : Exit::kPassed;
 }
 

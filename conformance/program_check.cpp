@@ -53,6 +53,11 @@ class ProgramCheck::Overheard final : public HostedStream {
     device_->clear_sent();
     heard_ = 0;
   }
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
+    const bool is_known = device_->set_input(time, name, value);
+    overhear_sent();
+    return is_known;
+  }
 
  private:
   void overhear_sent() {
@@ -119,7 +124,6 @@ class ProgramCheck::OverheardServer final : public HostedServer {
     overhear_sent();
     return is_known;
   }
-  [[nodiscard]] std::span<const Input> inputs() const override { return server_->inputs(); }
   [[nodiscard]] std::vector<std::string> take_log() override { return server_->take_log(); }
 
  private:

@@ -49,14 +49,11 @@ Outcome<std::unique_ptr<StreamPort>> open(const Target& target) {
   return std::make_unique<MemoryStream<typename decltype(device)::value_type>>(*std::move(device));
 }
 
-template <auto make>
-constexpr HostEntry entry(std::string_view device) noexcept {
-  return {device, host<make>, open<make>};
-}
+std::span<const DeviceInput> no_inputs() noexcept { return {}; }
 
 constexpr std::array kDevices{
-    entry<make_demo>("demo"),
-    entry<parol6::make_arm>("parol6"),
+    HostEntry{"demo", host<make_demo>, open<make_demo>, no_inputs},
+    HostEntry{"parol6", host<parol6::make_arm>, open<parol6::make_arm>, parol6::arm_inputs},
 };
 
 Outcome<std::unique_ptr<HostedServer>> host_kinovazed(const DeviceOptions& options,
@@ -72,7 +69,8 @@ Outcome<std::unique_ptr<SessionSource>> open_kinovazed(const Target& target) {
   return make_memory_server(*std::move(server));
 }
 
-constexpr std::array kServers{ServerEntry{"kinovazed", host_kinovazed, 51717, open_kinovazed}};
+constexpr std::array kServers{
+    ServerEntry{"kinovazed", host_kinovazed, 51717, open_kinovazed, kinovazed::server_inputs}};
 
 std::string all_names() {
   std::string names;

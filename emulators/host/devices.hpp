@@ -9,6 +9,7 @@
 
 #include "emulators/host/hosted_server.hpp"
 #include "emulators/host/hosted_stream.hpp"
+#include "harness/core/device_input.hpp"
 #include "harness/core/error.hpp"
 #include "harness/rig/session_rig.hpp"
 #include "harness/rig/target.hpp"
@@ -22,6 +23,7 @@ struct HostEntry {
   Outcome<std::unique_ptr<HostedStream>> (*make)(const DeviceOptions& options,
                                                  const std::string& where);
   OpenEmulated open;  ///< the same device in this process, on virtual time
+  std::span<const DeviceInput> (*inputs)() noexcept;  ///< what its `set_input` knows
 };
 
 /// All of them. This is the room's one list of devices.
@@ -34,6 +36,7 @@ struct ServerEntry {
                                                  const std::string& where);
   std::uint16_t port;       ///< on which clients look for it
   OpenEmulatedServer open;  ///< the same server in this process, on virtual time
+  std::span<const DeviceInput> (*inputs)() noexcept;  ///< what its `set_input` knows
 };
 
 /// All of them: devices that know connections and not just bytes.

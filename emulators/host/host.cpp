@@ -60,6 +60,14 @@ class Host::Loop {
   void run() { context_.run(); }
   void stop() { context_.stop(); }
 
+  void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell) {
+    boost::asio::post(context_, [this, name = std::move(name), value, tell = std::move(tell)] {
+      catch_up();
+      tell(device_->set_input(reached_, name, value));
+      pump();
+    });
+  }
+
   [[nodiscard]] std::vector<std::string> targets() const {
     std::vector<std::string> all;
     for (const auto& link : links_) {
@@ -183,6 +191,10 @@ Outcome<Host> Host::open(std::unique_ptr<HostedStream> device, const HostOptions
 std::vector<std::string> Host::targets() const { return loop_->targets(); }
 void Host::run() { loop_->run(); }
 void Host::stop() { loop_->stop(); }
+void Host::set_input(std::string name, std::int64_t value,
+                     std::function<void(bool is_taken)> tell) {
+  loop_->set_input(std::move(name), value, std::move(tell));
+}
 HostStatistics Host::statistics() const { return loop_->statistics(); }
 
 }  // namespace armjig

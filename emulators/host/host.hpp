@@ -35,7 +35,7 @@ struct HostStatistics {
 /// at the virtual time of their arrival, and leave when virtual time has come; answers go to the
 /// link that sent last.
 ///
-/// One thread: everything but `stop` belongs to the one that calls `run`.
+/// One thread: everything but `stop` and `set_input` belongs to the one that calls `run`.
 class Host {
  public:
   /// Listens from now on; clients are served once it runs. Problems: `kBadValue` (speed, no link),
@@ -57,6 +57,10 @@ class Host {
 
   /// Ends `run`, now or as soon as it begins. May be called from any thread.
   void stop();
+
+  /// Does something beside the device while `run` runs, and tells there whether there is an input
+  /// of that name which takes the value. May be called from any thread.
+  void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell);
 
   [[nodiscard]] HostStatistics statistics() const;
 

@@ -24,9 +24,6 @@ class KinovaServer final : public HostedServer {
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
     return server_.set_input(time, name, value);
   }
-  [[nodiscard]] std::span<const Input> inputs() const override {
-    return kinovazed::server_inputs();
-  }
   [[nodiscard]] std::vector<std::string> take_log() override {
     std::vector<std::string> lines;
     for (const auto& line : server_.log()) lines.push_back(line.text);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "harness/core/emulation.hpp"
@@ -24,6 +26,8 @@ class HostedStream {
   [[nodiscard]] virtual std::optional<Instant> next_event() const = 0;
   [[nodiscard]] virtual std::span<const SentBytes> sent() const = 0;
   virtual void clear_sent() = 0;
+  /// Does beside the device what no client can. False: nothing has that name.
+  [[nodiscard]] virtual bool set_input(Instant time, std::string_view name, std::int64_t value) = 0;
 };
 
 template <EmulatedStream Device>
@@ -38,6 +42,13 @@ template <EmulatedStream Device>
     }
     [[nodiscard]] std::span<const SentBytes> sent() const override { return device_.sent(); }
     void clear_sent() override { device_.clear_sent(); }
+    [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
+      if constexpr (requires { device_.set_input(time, name, value); }) {
+        return device_.set_input(time, name, value);
+      } else {
+        return false;
+      }
+    }
 
    private:
     Device device_;

@@ -85,7 +85,7 @@ class SessionHost::Loop {
   void run() { context_.run(); }
   void stop() { context_.stop(); }
 
-  void set_input(std::string name, std::int64_t value, std::function<void(bool is_known)> tell) {
+  void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell) {
     boost::asio::post(context_, [this, name = std::move(name), value, tell = std::move(tell)] {
       catch_up();
       tell(server_->set_input(reached_, name, value));
@@ -342,7 +342,7 @@ std::string SessionHost::target() const { return loop_->target(); }
 void SessionHost::run() { loop_->run(); }
 void SessionHost::stop() { loop_->stop(); }
 void SessionHost::set_input(std::string name, std::int64_t value,
-                            std::function<void(bool is_known)> tell) {
+                            std::function<void(bool is_taken)> tell) {
   loop_->set_input(std::move(name), value, std::move(tell));
 }
 HostStatistics SessionHost::statistics() const { return loop_->statistics(); }

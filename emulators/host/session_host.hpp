@@ -43,9 +43,9 @@ class SessionHost {
   void run();
   /// Ends `run`, now or as soon as it begins. May be called from any thread.
   void stop();
-  /// Sets an input of the server while `run` runs, and tells there whether it has one of that name.
-  /// May be called from any thread.
-  void set_input(std::string name, std::int64_t value, std::function<void(bool is_known)> tell);
+  /// Sets an input of the server while `run` runs, and tells there whether there is one of that
+  /// name which takes the value. May be called from any thread.
+  void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell);
   [[nodiscard]] HostStatistics statistics() const;
 
  private:

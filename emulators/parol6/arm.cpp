@@ -2,10 +2,22 @@
 #include "emulators/parol6/arm.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 #include <variant>
 
 namespace armjig::parol6 {
 namespace {
+
+constexpr std::array kInputs{
+    DeviceInput{"estop", "0 pressed, 1 released: the level of its input"},
+    DeviceInput{"in1", "0 or 1: the level of input 1"},
+    DeviceInput{"in2", "0 or 1: the level of input 2"},
+    DeviceInput{"position.jN", "steps: puts the axis there, behind the board's back"},
+    DeviceInput{"switch.jN", "its limit switch: 0 works, 1 stuck closed, 2 stuck open"},
+    DeviceInput{"between-fingers", "where closing fingers meet something, 0 to 255; -1: nothing"},
+    DeviceInput{"power", "any: off and on, board and gripper"},
+};
 
 constexpr std::string_view kPosition = "position.j";
 constexpr std::string_view kSwitch = "switch.j";
@@ -29,6 +41,7 @@ bool set_in_plant(Plant& plant, std::string_view name, std::int64_t value) noexc
     return true;
   }
   if (const auto joint = joint_of(name, kPosition)) {
+    if (!std::in_range<std::int32_t>(value)) return false;
     plant.axes[*joint].position = Steps{static_cast<std::int32_t>(value)};
     return true;
   }
@@ -41,6 +54,8 @@ bool set_in_plant(Plant& plant, std::string_view name, std::int64_t value) noexc
 }
 
 }  // namespace
+
+std::span<const DeviceInput> arm_inputs() noexcept { return kInputs; }
 
 Arm::Arm(const ArmOptions& options)
     : board_{options.plant, options.timing, options.profile, options.figures} {
@@ -99,7 +114,7 @@ bool Arm::set_input(Instant time, std::string_view name, std::int64_t value) {
     return true;
   }
   if (name == "between-fingers") {
-    if (!gripper_) return false;
+    if (!gripper_ || value < -1 || value > UINT8_MAX) return false;
     auto fingers = gripper_->plant();
     fingers.stop_closing.reset();
     if (value >= 0) fingers.stop_closing = static_cast<std::uint8_t>(value);

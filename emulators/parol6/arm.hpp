@@ -12,6 +12,7 @@
 #include "emulators/parol6/gripper.hpp"
 #include "emulators/parol6/plant.hpp"
 #include "harness/core/bytes.hpp"
+#include "harness/core/device_input.hpp"
 #include "harness/core/emulation.hpp"
 #include "harness/core/time.hpp"
 
@@ -24,6 +25,9 @@ struct ArmOptions {
   BoardFigures figures{};
   std::optional<GripperOptions> gripper = GripperOptions{};  ///< none: nothing is on the CAN
 };
+
+/// All that `Arm::set_input` knows; `N` is the number of a joint, 1 to 6.
+[[nodiscard]] std::span<const DeviceInput> arm_inputs() noexcept;
 
 /// A PAROL6 as a host sees it: the control board on its serial link, with or without a gripper on
 /// the board's CAN. A regular value: a copy is a snapshot.
@@ -55,10 +59,8 @@ class Arm {
   /// The same for what the fingers meet. Without a gripper nothing happens.
   void touch_gripper(Instant time, const GripperPlant& plant);
 
-  /// What a person beside the arm can do, by name: `estop`, `in1`, `in2` (levels, as in
-  /// recordings), `position.j1` (puts the axis there), `switch.j1` (0 works, 1 stuck closed, 2
-  /// stuck open), `between-fingers` (position byte of something that the gripper meets on closing,
-  /// -1 nothing), `power` (off and on, whatever the value). False: there is no such thing.
+  /// What a person beside the arm can do, by `arm_inputs`. False: there is no such thing, or it
+  /// does not take that value.
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
 
   /// Power off and on for board and gripper; axes and fingers stay where they are.

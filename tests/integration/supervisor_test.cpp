@@ -87,6 +87,9 @@ class WatchedArm final : public HostedStream {
     sight_.frames += static_cast<int>(arm_.sent().size());
     arm_.clear_sent();
   }
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
+    return arm_.set_input(time + age_, name, value);
+  }
 
  private:
   [[nodiscard]] JointSteps positions() const {

@@ -19,23 +19,23 @@ constexpr std::array<std::string_view, 6> kAxisNames{"x",       "y",       "z",
                                                      "wrist-x", "wrist-y", "wrist-z"};
 
 constexpr std::array kInputs{
-    ServerInput{"restart", "any: a new process, and an arm that was just switched on"},
-    ServerInput{"arm.plugged", "0 or 1: its USB cable"},
-    ServerInput{"arm.fail.CALL", "so many of the next calls fail; -1: all, 0: none"},
-    ServerInput{"arm.mode", "what the arm says that it does, as a number of Kinova's"},
-    ServerInput{"arm.current", "of all joints together, in milliampere"},
-    ServerInput{"arm.joystick.x", "its own joystick, -1000 to 1000: left and right"},
-    ServerInput{"arm.joystick.y", "-1000 to 1000: to the front and back"},
-    ServerInput{"arm.joystick.z", "-1000 to 1000: twisted, up and down"},
-    ServerInput{"arm.joystick.wrist-x", "-1000 to 1000: the same for the wrist"},
-    ServerInput{"arm.joystick.wrist-y", "-1000 to 1000"},
-    ServerInput{"arm.joystick.wrist-z", "-1000 to 1000"},
-    ServerInput{"arm.joystick.home", "1: its home button is held, 0: all of it is let go"},
+    DeviceInput{"restart", "any: a new process, and an arm that was just switched on"},
+    DeviceInput{"arm.plugged", "0 or 1: its USB cable"},
+    DeviceInput{"arm.fail.CALL", "so many of the next calls fail; -1: all, 0: none"},
+    DeviceInput{"arm.mode", "what the arm says that it does, as a number of Kinova's"},
+    DeviceInput{"arm.current", "of all joints together, in milliampere"},
+    DeviceInput{"arm.joystick.x", "its own joystick, -1000 to 1000: left and right"},
+    DeviceInput{"arm.joystick.y", "-1000 to 1000: to the front and back"},
+    DeviceInput{"arm.joystick.z", "-1000 to 1000: twisted, up and down"},
+    DeviceInput{"arm.joystick.wrist-x", "-1000 to 1000: the same for the wrist"},
+    DeviceInput{"arm.joystick.wrist-y", "-1000 to 1000"},
+    DeviceInput{"arm.joystick.wrist-z", "-1000 to 1000"},
+    DeviceInput{"arm.joystick.home", "1: its home button is held, 0: all of it is let go"},
 };
 
 }  // namespace
 
-std::span<const ServerInput> server_inputs() noexcept { return kInputs; }
+std::span<const DeviceInput> server_inputs() noexcept { return kInputs; }
 
 DefectiveServer::DefectiveServer(Server server, std::vector<Quirk> quirks)
     : fresh_{server},

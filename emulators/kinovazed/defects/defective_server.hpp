@@ -11,17 +11,12 @@
 
 #include "emulators/kinovazed/defects/quirks.hpp"
 #include "emulators/kinovazed/server.hpp"
+#include "harness/core/device_input.hpp"
 
 namespace armjig::kinovazed {
 
-/// Something at the server's machine or arm, and what its values are.
-struct ServerInput {
-  std::string_view name;
-  std::string_view values;
-};
-
 /// All that `DefectiveServer::set_input` knows; `CALL` stands for each of `kArmCallNames`.
-[[nodiscard]] std::span<const ServerInput> server_inputs() noexcept;
+[[nodiscard]] std::span<const DeviceInput> server_inputs() noexcept;
 
 /// A server with quirks at its sockets, and what people can do at its machine. Without quirks it is
 /// the server itself. Times given never decrease.

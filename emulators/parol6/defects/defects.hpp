@@ -52,13 +52,14 @@ struct Defects {
 /// A fault of an emulated board as users write it. All forms of `parse_fault` with telemetry
 /// fields go to `sent`; others change `arm` or `defects`:
 ///
-///     in.KIND:FIELD                  a field of command frames
-///     row:STATE.CODE.CODE            in a state a code acts as another, or as the one before
-///     (kept) deaf:outputs.CODE              outputs, or gripper, are not taken from frames of that
-///     code ears:NAME  quirk:NAME          a defect of reception, a wrong behaviour profile:NAME
-///     one difference of the profile turned round homing:jN.FIGURE  demo:jN.FIGURE  a wrong figure
-///     plant:mirrored.jN  timer:BITS  an axis that turns the wrong way; a narrower timer
-///     check:d4  check:d4-or-e4       only these check bytes are taken
+/// - `in.KIND:FIELD`: a field of command frames.
+/// - `row:STATE.CODE.CODE`: in a state a code acts as another, or, with `kept`, as the one before.
+/// - `deaf:outputs.CODE`: outputs, or `gripper`, are not taken from frames of that code.
+/// - `ears:NAME`, `quirk:NAME`: a defect of reception, a wrong behaviour.
+/// - `profile:NAME`: one difference of the profile turned round.
+/// - `homing:jN.FIGURE`, `demo:jN.FIGURE`: a wrong figure.
+/// - `plant:mirrored.jN`, `timer:BITS`: an axis that turns the wrong way, a narrower timer.
+/// - `check:d4`, `check:d4-or-e4`: only these check bytes are taken.
 ///
 /// Problems: `kBadValue`.
 [[nodiscard]] Outcome<void> add_fault(std::string_view text, ArmOptions& arm, Defects& defects,

@@ -53,6 +53,23 @@ TEST(ProgramCheck, TellsOfEachOffenceAndSumsThemUp) {
   EXPECT_EQ(row->actual, "3 times, first at 0.010 s: gripper.id was 20");
 }
 
+TEST(ProgramCheck, SeesWhatAHandBesideTheDeviceDoes) {
+  ProgramCheck check{parol6_entry(), {}, [](const Offence&) {}};
+  const auto device = watched_arm(check);
+  parol6::CommandFrame jog{.command = parol6::Command::kJog};
+  jog.speed[0] = StepsPerSecond{100};
+  for (auto now = 10ms; now < 2s; now += 10ms) {
+    if (now == 1s) {
+      EXPECT_EQ(check.count("parol6.host.estop-disables"), 0U);
+      ASSERT_TRUE(device->set_input(at(now), "estop", 0));
+    }
+    device->receive(at(now), encode(jog));
+    device->advance_to(at(now + 5ms));
+    device->clear_sent();
+  }
+  EXPECT_GT(check.count("parol6.host.estop-disables"), 0U);
+}
+
 TEST(ProgramCheck, PassesNothingThatDidNotRun) {
   ProgramCheck check{parol6_entry(), {}, [](const Offence&) {}};
   const auto device = watched_arm(check);

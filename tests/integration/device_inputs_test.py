@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lines on standard input reach a hosted server; a server without standard input works all the same.
+"""Lines on standard input reach a hosted device; one without standard input works all the same.
 
-    /usr/bin/python3 server_inputs_test.py build/release/cli/armjig
+    /usr/bin/python3 device_inputs_test.py build/release/cli/armjig
 """
 import json
 import os
@@ -11,10 +11,10 @@ import subprocess
 import sys
 
 
-class Server:
-    def __init__(self, armjig, stdin, before=None):
+class Hosted:
+    def __init__(self, armjig, device, stdin, before=None):
         self.process = subprocess.Popen(
-            [armjig, "emulate", "kinovazed", "--tcp", "0", "--speed", "10", "--json"],
+            [armjig, "emulate", device, "--tcp", "0", "--speed", "10", "--json"],
             stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             close_fds=before is None, preexec_fn=before)
         place = json.loads(self.process.stdout.readline())["listening"][0]
@@ -23,7 +23,7 @@ class Server:
         self.lines = self.socket.makefile("rb")
 
     def tell(self, line):
-        """Writes a line and returns what the server has to say about it."""
+        """Writes a line and returns what the emulator has to say about it."""
         self.process.stdin.write(line + "\n")
         self.process.stdin.flush()
         return self.process.stderr.readline().strip().removeprefix("armjig: ")
@@ -47,14 +47,14 @@ class Server:
         return errors
 
 
-def check_lines(armjig):
-    server = Server(armjig, subprocess.PIPE)
+def check_server(armjig):
+    server = Hosted(armjig, "kinovazed", subprocess.PIPE)
     server.say("QuitEStop", "Accepted")
     server.say("Initialize", "Initialized")
     server.hear("Heartbeat:21")
     assert "NAME NUMBER" in server.tell("arm.fail.status_read"), "a number is missing"
     assert "NAME NUMBER" in server.tell("arm.fail.status_read 1 2")
-    assert "no input 'arm.foot'" in server.tell("arm.foot 1")
+    assert "no input 'arm.foot' here that takes 1" in server.tell("arm.foot 1")
     assert "restart" in server.tell("help")
     for _ in range(11):
         server.process.stderr.readline()
@@ -68,15 +68,38 @@ def check_lines(armjig):
     server.end()
 
 
+IDLE = bytes.fromhex("ff ff ff 34") + bytes(36) + bytes([255, 255]) + bytes(11) + b"\xe4\x01\x02"
+ESTOP_RELEASED = 0x08
+
+
+def is_estop_pressed(board):
+    board.socket.sendall(IDLE)
+    frame = board.lines.read(60)
+    assert frame[:4] == bytes.fromhex("ff ff ff 38"), frame.hex(" ")
+    return not frame[41] & ESTOP_RELEASED
+
+
+def check_board(armjig):
+    board = Hosted(armjig, "parol6", subprocess.PIPE)
+    assert not is_estop_pressed(board)
+    assert board.tell("estop 0") == "estop is 0"
+    assert is_estop_pressed(board)
+    assert "no input 'switch.j1' here that takes 9" in board.tell("switch.j1 9")
+    assert board.tell("estop 1") == "estop is 1"
+    assert not is_estop_pressed(board)
+    board.end()
+
+
 def check_without(armjig):
-    server = Server(armjig, subprocess.DEVNULL)
+    server = Hosted(armjig, "kinovazed", subprocess.DEVNULL)
     server.say("EStop", "Accepted")
     server.end()
-    server = Server(armjig, None, before=lambda: os.close(0))
+    server = Hosted(armjig, "kinovazed", None, before=lambda: os.close(0))
     server.say("EStop", "Accepted")
     assert server.end().startswith("armjig: 1 clients served")
 
 
-check_lines(sys.argv[1])
+check_server(sys.argv[1])
+check_board(sys.argv[1])
 check_without(sys.argv[1])
 print("ok")

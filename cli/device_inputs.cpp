@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/server_inputs.hpp"
+#include "cli/device_inputs.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 namespace armjig::cli {
 namespace {
@@ -48,12 +49,12 @@ void tell(std::string_view text) { fmt::print(stderr, "armjig: {}\n", text); }
 
 bool has_standard_input() noexcept { return ::fcntl(STDIN_FILENO, F_GETFD) != -1; }
 
-ServerInputs::ServerInputs(SessionHost& host, std::span<const HostedServer::Input> inputs)
-    : host_{host},
-      inputs_{inputs.begin(), inputs.end()},
+DeviceInputs::DeviceInputs(std::span<const DeviceInput> inputs, Set set)
+    : inputs_{inputs},
+      set_{std::move(set)},
       thread_{[this](const std::stop_token& stop) { read(stop); }} {}
 
-void ServerInputs::read(const std::stop_token& stop) {
+void DeviceInputs::read(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     pollfd ready{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     const bool is_mine = is_ours();
@@ -71,7 +72,7 @@ void ServerInputs::read(const std::stop_token& stop) {
   }
 }
 
-void ServerInputs::obey(std::string_view line) {
+void DeviceInputs::obey(std::string_view line) {
   const auto name = next_word(line);
   const auto said = next_word(line);
   if (name.empty() || name.starts_with('#')) return;
@@ -83,9 +84,10 @@ void ServerInputs::obey(std::string_view line) {
   if (!value || !next_word(line).empty()) {
     return tell(fmt::format("'{}': write NAME NUMBER; 'help' lists the names", name));
   }
-  host_.set_input(std::string{name}, *value, [name = std::string{name}, value](bool is_known) {
-    tell(is_known ? fmt::format("{} is {}", name, *value)
-                  : fmt::format("there is no input '{}' here; 'help' lists them", name));
+  set_(std::string{name}, *value, [name = std::string{name}, value](bool is_taken) {
+    tell(is_taken ? fmt::format("{} is {}", name, *value)
+                  : fmt::format("there is no input '{}' here that takes {}; 'help' lists them",
+                                name, *value));
   });
 }
 
