@@ -41,6 +41,7 @@ void add_bus_target_options(CLI::App& app, TargetOptions& options) {
          "what may be done to devices that are not emulated: state,move,grip,program or all "
          "(default: only look)")
       ->type_name("LIST");
+  add_link_options(app, options);
 }
 
 void add_node_option(CLI::App& app, std::uint8_t& node) {

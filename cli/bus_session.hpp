@@ -15,7 +15,7 @@ namespace armjig::cli {
 /// Reads the options and opens the bus. `device` must be one that is on a bus.
 [[nodiscard]] Outcome<BusRig> open_bus_rig(std::string_view device, const TargetOptions& options);
 
-/// Adds `--target` and `--allow`, which is all that a bus takes.
+/// `add_target_options` in the words of a bus.
 void add_bus_target_options(CLI::App& app, TargetOptions& options);
 
 /// Adds a node's identifier as `--node`, 0 to 16.

@@ -17,6 +17,10 @@ void add_target_options(CLI::App& app, TargetOptions& options) {
                  "state,move,home,grip,program,crash or all "
                  "(default: only look)")
       ->type_name("LIST");
+  add_link_options(app, options);
+}
+
+void add_link_options(CLI::App& app, TargetOptions& options) {
   app.add_option("--impair", options.impair,
                  "make the link bad, as in loss=0.1%,delay=normal(2ms,1ms),split=random,seed=7")
       ->type_name("SPEC");

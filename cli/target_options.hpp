@@ -22,6 +22,9 @@ struct TargetOptions {
 /// in its own words that the target is missing.
 void add_target_options(CLI::App& app, TargetOptions& options);
 
+/// Adds `--impair` and `--wire-log` alone.
+void add_link_options(CLI::App& app, TargetOptions& options);
+
 /// Reads the options.
 [[nodiscard]] Outcome<RigOptions> parse_target_options(const TargetOptions& options);
 

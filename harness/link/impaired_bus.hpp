@@ -13,8 +13,7 @@ namespace armjig {
 /// An I2C bus that is as bad as `Impairment` says, as far as a bus can be. Each byte on the wire is
 /// a chunk, addresses included.
 ///
-/// - `loss` out: the device misses the byte, so that nobody acknowledges it; after a missed
-/// address,
+/// - `loss` out: the device misses the byte, so that nobody acknowledges it; after a missed address
 ///   it misses everything until the next start. `loss` in: the byte reads as 0xFF, as an idle line.
 /// - `bit_errors`: in data bytes. An address with one is a missed address: it must not mean another
 ///   device.
@@ -33,6 +32,9 @@ class ImpairedBus final : public BusPort {
   Result<void> recover() override { return inner_->recover(); }
   void wait_until(Instant time) override { inner_->wait_until(time); }
   [[nodiscard]] Instant now() const override { return inner_->now(); }
+  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
+    return inner_->touch(input, value);
+  }
 
   [[nodiscard]] ImpairmentStatistics statistics() const noexcept { return paths_.statistics(); }
 

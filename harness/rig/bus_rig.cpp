@@ -9,6 +9,7 @@
 #include "harness/link/i2c_dev.hpp"
 #include "harness/link/i2c_tiny_usb.hpp"
 #include "harness/link/impaired_bus.hpp"
+#include "harness/rig/bus_log.hpp"
 
 namespace armjig {
 
@@ -23,9 +24,6 @@ Outcome<std::unique_ptr<BusPort>> open_bus(const Target& target, OpenEmulatedBus
 Outcome<BusRig> BusRig::open(std::string_view device, const RigOptions& options,
                              OpenEmulatedBus open_emulated) {
   const bool is_emulated = options.target.is_emulated();
-  if (!options.wire_log.empty()) {
-    return problem(ErrorCode::kUnsupported, "--wire-log", "of a bus there is none yet");
-  }
   if (options.impairment && !is_emulated) {
     return problem(ErrorCode::kUnsupported, "--impair",
                    "only an emulated bus can be made bad on purpose");
@@ -34,6 +32,12 @@ Outcome<BusRig> BusRig::open(std::string_view device, const RigOptions& options,
   if (!port) return tl::unexpected{port.error()};
   BusRig rig;
   rig.port_ = *std::move(port);
+  if (!options.wire_log.empty()) {
+    const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
+    auto logged = LoggedBus::log(std::move(rig.port_), options.wire_log, *entry);
+    if (!logged) return tl::unexpected{logged.error()};
+    rig.port_ = *std::move(logged);
+  }
   if (options.impairment) {
     auto impaired = ImpairedBus::make(std::move(rig.port_), *options.impairment);
     if (!impaired) return tl::unexpected{impaired.error()};

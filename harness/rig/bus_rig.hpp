@@ -20,8 +20,8 @@ using OpenEmulatedBus = Outcome<std::unique_ptr<BusPort>> (*)(const Target& targ
 [[nodiscard]] Outcome<std::unique_ptr<BusPort>> open_bus(const Target& target,
                                                          OpenEmulatedBus open_emulated);
 
-/// `Rig` for devices on a bus: the port, the guard unless it is emulated, the impairments, which
-/// only an emulated bus can have.
+/// `Rig` for devices on a bus: the port, the wire log, the guard unless it is emulated, the
+/// impairments, which only an emulated bus can have.
 class BusRig {
  public:
   /// `device` must be one that this room knows. Problems: those of `open_bus`, and `kUnsupported`

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "harness/capture/message_json.hpp"
 #include "harness/core/hex.hpp"
 
 namespace armjig {
@@ -14,18 +13,12 @@ namespace armjig {
 Outcome<std::unique_ptr<SessionPort>> LoggedSession::log(std::unique_ptr<SessionPort> port,
                                                          const std::string& path,
                                                          const DissectorEntry& device) {
-  std::ofstream file{path, std::ios::trunc};
-  file << fmt::format(R"({{"format":"golden-trace/1","device":"{}","title":"wire log"}})",
-                      device.device)
-       << '\n'
-       << std::flush;
-  if (!file) {
-    return problem(ErrorCode::kCannotWrite, path, "check that the folder exists and is writable");
-  }
-  return std::unique_ptr<SessionPort>{new LoggedSession{std::move(port), std::move(file), device}};
+  auto file = LogFile::create(path, device.device);
+  if (!file) return tl::unexpected{file.error()};
+  return std::unique_ptr<SessionPort>{new LoggedSession{std::move(port), *std::move(file), device}};
 }
 
-LoggedSession::LoggedSession(std::unique_ptr<SessionPort> port, std::ofstream file,
+LoggedSession::LoggedSession(std::unique_ptr<SessionPort> port, LogFile file,
                              const DissectorEntry& device)
     : port_{std::move(port)}, file_{std::move(file)}, device_{device} {}
 
@@ -36,10 +29,8 @@ Result<void> LoggedSession::connect(Instant deadline) {
   ++connection_;
   is_open_ = !is_refused;
   dissector_ = device_.make();
-  file_ << fmt::format(R"({{"t_us":{},"dir":"connect","conn":{},"text":"{}"}})",
-                       microseconds(now()), connection_, is_refused ? "refused" : "ok")
-        << '\n'
-        << std::flush;
+  file_.add(now(), fmt::format(R"("dir":"connect","conn":{},"text":"{}")", connection_,
+                               is_refused ? "refused" : "ok"));
   return connected;
 }
 
@@ -82,23 +73,16 @@ void LoggedSession::write_end(std::string_view how) {
 }
 
 void LoggedSession::write_disconnect(std::string_view how) {
-  file_ << fmt::format(R"({{"t_us":{},"dir":"disconnect","conn":{},"text":"{}"}})",
-                       microseconds(now()), connection_, how)
-        << '\n'
-        << std::flush;
+  file_.add(now(), fmt::format(R"("dir":"disconnect","conn":{},"text":"{}")", connection_, how));
 }
 
 void LoggedSession::write_bytes(Direction direction, Bytes bytes) {
   std::vector<Message> messages;
   dissector_->feed(direction, now(), bytes, messages);
-  file_ << fmt::format(R"({{"t_us":{},"dir":"{}","conn":{},"hex":"{}")", microseconds(now()),
-                       to_string(direction), connection_, to_hex(bytes));
-  const char* separator = ",\"messages\":[";
-  for (const auto& message : messages) {
-    file_ << separator << to_json(message);
-    separator = ",";
-  }
-  file_ << (messages.empty() ? "}" : "]}") << '\n' << std::flush;
+  file_.add(now(),
+            fmt::format(R"("dir":"{}","conn":{},"hex":"{}")", to_string(direction), connection_,
+                        to_hex(bytes)),
+            messages);
 }
 
 }  // namespace armjig

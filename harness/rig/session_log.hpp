@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "harness/core/error.hpp"
 #include "harness/link/session_port.hpp"
+#include "harness/rig/log_file.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
 /// `LoggedStream` for a server: every segment of every connection, how each began and ended, and
-/// what was said, as a `golden-trace/1` file.
+/// what was said.
 class LoggedSession final : public SessionPort {
  public:
   /// Problems: the file cannot be written.
@@ -31,14 +31,13 @@ class LoggedSession final : public SessionPort {
   [[nodiscard]] std::optional<int> descriptor() const override { return port_->descriptor(); }
 
  private:
-  LoggedSession(std::unique_ptr<SessionPort> port, std::ofstream file,
-                const DissectorEntry& device);
+  LoggedSession(std::unique_ptr<SessionPort> port, LogFile file, const DissectorEntry& device);
   void write_bytes(Direction direction, Bytes bytes);
   void write_end(std::string_view how);
   void write_disconnect(std::string_view how);
 
   std::unique_ptr<SessionPort> port_;
-  std::ofstream file_;
+  LogFile file_;
   const DissectorEntry& device_;
   std::unique_ptr<Dissector> dissector_;  ///< of the connection
   int connection_ = -1;

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fstream>
 #include <memory>
 #include <string>
 
 #include "harness/core/error.hpp"
 #include "harness/link/stream_port.hpp"
+#include "harness/rig/log_file.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
-/// Writes down every byte that passes, with its time and what it means, as a `golden-trace/1` file:
-/// a line for each piece as it was written or read, with a key `messages` for those that ended in
-/// it. `armjig decode` reads it back. Lines are flushed as they are made, so that nothing is
-/// missing after a crash. Not in it: what a write that failed may have sent in part, and the stops
-/// of the supervisor, which come when we are gone.
+/// Writes down every byte that passes, with its time and what it means: a line for each piece as it
+/// was written or read, with a key `messages` for those that ended in it. Not in it: what a write
+/// that failed may have sent in part, and the stops of the supervisor, which come when we are gone.
 class LoggedStream final : public StreamPort {
  public:
   /// Problems: the file cannot be written.
@@ -30,12 +28,12 @@ class LoggedStream final : public StreamPort {
   [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override;
 
  private:
-  LoggedStream(std::unique_ptr<StreamPort> port, std::ofstream file,
+  LoggedStream(std::unique_ptr<StreamPort> port, LogFile file,
                std::unique_ptr<Dissector> dissector);
   void write_line(Direction direction, Bytes bytes);
 
   std::unique_ptr<StreamPort> port_;
-  std::ofstream file_;
+  LogFile file_;
   std::unique_ptr<Dissector> dissector_;
 };
 

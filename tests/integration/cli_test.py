@@ -60,6 +60,7 @@ def rows(folder):
     binary = folder / "binary.rbt"
     binary.write_bytes(bytes(range(256)))
     silent = folder / "wire.jsonl"
+    logged = folder / "bus.jsonl"
     return [
         # Misuse: one clear line, exit code 2.
         ("", "", 2, ["!subcommand is required"]),
@@ -103,6 +104,11 @@ def rows(folder):
         # What it is for.
         ("i2c scan --target emulated:?nodes=1,2&pen=yes", "", 0, ["0x11", "0x12", "0x19"]),
         ("i2c read 0x12 1 --select 83 --target emulated:", "", 0, ["needs_calibration"]),
+        ("i2c scan --target emulated: --impair loss=100%", "", 4, ["!nobody answers"]),
+        ("i2c scan --target i2c:/dev/null --impair loss=1%", "", 2, ["!--impair"]),
+        (f"i2c read 0x12 1 --select 83 --target emulated: --wire-log {logged}", "", 0, []),
+        (f"decode morap --file {logged}", "", 0, ["needs_calibration"]),
+        (f"morap read-params --target emulated: --wire-log {folder}/no/log", "", 3, ["!/no/log"]),
         ("decode morap 24 80", "", 0, ["128 (read_angle)"]),
         (f"decode morap --file {SOURCE}/captures/morap/bus-scan.jsonl", "", 1,
          ["poke", "cut short", "!transactions without an answer"]),

@@ -137,6 +137,7 @@ const std::vector<Step>& steps() {
         {"harness/link/reopening_stream.cpp", "passes on what it is given"},
         {"harness/rig/guard.cpp", "is the guard"},
         {"harness/rig/wire_log.cpp", "passes on what it is given"},
+        {"harness/rig/bus_log.cpp", "passes on what it is given"},
         {"harness/report/report.cpp", "a file"},
         {"harness/core/emulation.hpp", "a concept of emulated devices, no code"}}},
       {"sending in a session",
