@@ -29,9 +29,9 @@ struct Options {
   bool list = false;
 };
 
-Exit list_mutants(const MutantsEntry& entry, const std::string& filter) {
+Exit list_mutants(const MutantsEntry& entry, Profile profile, const std::string& filter) {
   bool has_any = false;
-  for (const auto& mutant : mutants_of(entry)) {
+  for (const auto& mutant : mutants_of(entry, profile)) {
     if (mutant.name.find(filter) == std::string::npos) continue;
     has_any = true;
     fmt::print("{:<40} {}{}{}\n", mutant.name, mutant.section,
@@ -71,8 +71,8 @@ Exit mutants(Options options) {
     return report({ErrorCode::kUnknownDevice, fmt::format("'{}'", options.device),
                    "there are mutants of:" + names});
   }
-  if (options.list) return list_mutants(*entry, options.run.filter);
   options.run.profile = options.profile == "documented" ? Profile::kDocumented : Profile::kFirmware;
+  if (options.list) return list_mutants(*entry, options.run.profile, options.run.filter);
   options.run.proves_requirements = options.run.filter.empty();
   return run(*std::ranges::find(suites(), options.device, &Suite::device), *entry, options);
 }

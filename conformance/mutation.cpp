@@ -24,6 +24,8 @@ namespace armjig {
 namespace {
 
 constexpr std::uint64_t kSeed = 1;
+/// The profile that demands most, and for which the equivalent faults are known.
+constexpr Profile kShipped = Profile::kFirmware;
 
 using Cases = std::vector<const Case*>;
 
@@ -61,19 +63,28 @@ class Trial {
     bench_->bring_to(one.start);
     if (bench_->judgement().verdict != Verdict::kPass) {
       unreachable_.insert(one.start);
+      if (obstacle_.empty()) obstacle_ = failure().value_or("");
       return std::nullopt;
     }
     bench_->begin(profile_, kSeed);
     one.run(*bench_);
+    return failure();
+  }
+
+  /// What is wrong with a device that cannot be brought to a start; empty if nothing is.
+  [[nodiscard]] const std::string& obstacle() const noexcept { return obstacle_; }
+
+ private:
+  [[nodiscard]] std::optional<std::string> failure() const {
     const auto& judgement = bench_->judgement();
     if (judgement.verdict != Verdict::kFail) return std::nullopt;
     return fmt::format("expected {}, got {}", judgement.expected, judgement.actual);
   }
 
- private:
   std::unique_ptr<Bench> bench_;
   Profile profile_;
   std::set<std::uint8_t> unreachable_;
+  std::string obstacle_;
 };
 
 /// Calls `work` for 0 to `count` - 1 on several threads.
@@ -103,11 +114,12 @@ class Mutation {
 
   Outcome<MutationResult> run() {
     if (auto tried = try_sound(); !tried) return tl::unexpected{tried.error()};
-    for (auto& mutant : mutants_of(entry_)) {
+    for (auto& mutant : mutants_of(entry_, options_.profile)) {
       if (mutant.name.find(options_.filter) == std::string::npos) continue;
       result_.fates.push_back({std::move(mutant)});
     }
     try_all();
+    if (options_.profile != kShipped) excuse_survivors();
     if (options_.proves_requirements) prove_requirements();
     return std::move(result_);
   }
@@ -115,7 +127,7 @@ class Mutation {
  private:
   /// Only what passes on a sound device can show a fault.
   Outcome<void> try_sound() {
-    auto trial = open({});
+    auto trial = open({}, options_.profile);
     if (!trial) return tl::unexpected{trial.error()};
     (void)trial->begin();
     for (const auto* one : select(suite_, options_.profile, {})) {
@@ -125,13 +137,16 @@ class Mutation {
         cases_.push_back(one);
       }
     }
+    if (!trial->obstacle().empty()) {
+      result_.broken_on_sound.push_back(fmt::format("{}.start", suite_.device));
+    }
     return {};
   }
 
-  [[nodiscard]] Outcome<Trial> open(std::string_view fault) const {
-    auto bench = suite_.open(target_with(fault, options_.profile));
+  [[nodiscard]] Outcome<Trial> open(std::string_view fault, Profile profile) const {
+    auto bench = suite_.open(target_with(fault, profile));
     if (!bench) return tl::unexpected{bench.error()};
-    return Trial{*std::move(bench), options_.profile};
+    return Trial{*std::move(bench), profile};
   }
 
   /// A section is the work of one thread: what is found there shapes the order of what follows.
@@ -158,11 +173,14 @@ class Mutation {
     for (auto* fate : fates) {
       const auto killer = try_mutant(*fate, order);
       if (killer != order.end()) std::rotate(order.begin(), killer, killer + 1);
+      if (!fate->killer.empty() || !fate->mutant.equivalent.empty()) continue;
+      auto as_in_a_run = cases_;  // what a case finds may hang on what was done before it
+      (void)try_mutant(*fate, as_in_a_run);
     }
   }
 
   [[nodiscard]] Cases::iterator try_mutant(MutantFate& fate, Cases& order) const {
-    auto trial = open(fate.mutant.name);
+    auto trial = open(fate.mutant.name, options_.profile);
     if (!trial) {
       fate.finding = trial.error().where + ": " + trial.error().hint;
       return order.end();
@@ -179,7 +197,40 @@ class Mutation {
       fate.finding = *std::move(finding);
       return one;
     }
+    if (!trial->obstacle().empty()) {
+      fate.killer = fmt::format("{}.start", suite_.device);
+      fate.finding = trial->obstacle();
+    }
     return order.end();
+  }
+
+  /// A fault may break only what shipped devices do and this profile leaves open. One that breaks
+  /// something that both demand, and yet was not found, remains a survivor.
+  void excuse_survivors() {
+    const auto shipped_cases = select(suite_, kShipped, {});
+    std::set<std::string_view> demanded;
+    for (const auto* one : cases_) demanded.insert(one->requirement);
+    in_parallel(options_.threads, result_.fates.size(), [&](std::size_t i) {
+      auto& [mutant, killer, finding] = result_.fates[i];
+      if (!killer.empty()) mutant.equivalent.clear();  // here it is not
+      if (!killer.empty() || !mutant.equivalent.empty()) return;
+      const auto broken = broken_when_shipped(mutant, shipped_cases);
+      const bool is_left_open =
+          std::ranges::none_of(broken, [&](std::string_view id) { return demanded.contains(id); });
+      if (broken.empty() || !is_left_open) return;
+      mutant.equivalent = fmt::format("the profile leaves open what it breaks, {}", broken.front());
+    });
+  }
+
+  [[nodiscard]] std::vector<std::string_view> broken_when_shipped(const Mutant& mutant,
+                                                                  const Cases& cases) const {
+    auto trial = open(mutant.name, kShipped);
+    if (!trial || !trial->begin()) return {};
+    std::vector<std::string_view> broken;
+    for (const auto* one : cases) {
+      if (trial->finding(*one)) broken.push_back(one->requirement);
+    }
+    return broken;
   }
 
   void prove_requirements() {
@@ -214,7 +265,7 @@ class Mutation {
       return is_hinted(*own.front(), entry_.hints, mutant->section);
     });
     return std::ranges::any_of(order, [&](const Mutant* mutant) {
-      auto trial = open(mutant->name);
+      auto trial = open(mutant->name, options_.profile);
       if (!trial || !trial->begin()) return false;
       return std::ranges::any_of(own,
                                  [&](const Case* one) { return trial->finding(*one).has_value(); });
@@ -281,12 +332,14 @@ std::span<const MutantsEntry> mutants() noexcept {
   return kMutants;
 }
 
-std::vector<Mutant> mutants_of(const MutantsEntry& entry) {
+std::vector<Mutant> mutants_of(const MutantsEntry& entry, Profile profile) {
   std::vector<Mutant> all;
   for (auto& fault : entry.faults()) {
     Mutant mutant{std::move(fault.name), std::move(fault.section)};
-    const auto known = std::ranges::find(entry.equivalents, mutant.name, &EquivalentFault::name);
-    if (known != entry.equivalents.end()) mutant.equivalent = known->reason;
+    for (const auto& known : entry.equivalents) {
+      const bool applies = known.profile == profile || known.profile == kShipped;
+      if (known.name == mutant.name && applies) mutant.equivalent = known.reason;
+    }
     all.push_back(std::move(mutant));
   }
   return all;

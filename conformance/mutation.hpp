@@ -23,10 +23,12 @@ struct Mutant {
   std::string equivalent{};
 };
 
-/// A fault that is none on the wire.
+/// A fault that is none on the wire. What is so for the shipped device is so for one that keeps to
+/// its document as well, until it is found there.
 struct EquivalentFault {
   std::string_view name;
   std::string_view reason;
+  Profile profile = Profile::kFirmware;
 };
 
 /// Which requirements the faults of a section break most likely.
@@ -47,7 +49,7 @@ struct MutantsEntry {
 [[nodiscard]] std::span<const MutantsEntry> mutants() noexcept;
 
 /// One for each fault, in the order of the device's list.
-[[nodiscard]] std::vector<Mutant> mutants_of(const MutantsEntry& entry);
+[[nodiscard]] std::vector<Mutant> mutants_of(const MutantsEntry& entry, Profile profile);
 
 /// What became of one.
 struct MutantFate {
@@ -72,8 +74,9 @@ struct MutationResult {
 };
 
 /// Runs cases on each mutant until one finds it: those that the section hints at first, then what
-/// found the mutants of the section before. The same result for the same suite, whatever the
-/// number of threads. Problems: those of `Suite::open`.
+/// found the mutants of the section before, and at last in the order of a run. A survivor under the
+/// document is excused if it breaks only what shipped devices are held to. The same result for the
+/// same suite, whatever the number of threads. Problems: those of `Suite::open`.
 [[nodiscard]] Outcome<MutationResult> run_mutants(const Suite& suite, const MutantsEntry& entry,
                                                   const MutationOptions& options);
 

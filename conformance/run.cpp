@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "harness/core/version.hpp"
@@ -81,6 +82,7 @@ class Run {
     } else if (judgement.verdict == Verdict::kFail && deviates_as_known(one)) {
       judgement.verdict = Verdict::kDeviation;
     }
+    if (is_alive_) blame_start(one.start);
     excuse(one, judgement);
     if (judgement.verdict == Verdict::kFail || judgement.verdict == Verdict::kFlaky) {
       has_failed_ = true;
@@ -134,22 +136,39 @@ class Run {
 
   /// Why the case cannot begin. A state that was out of reach once is not tried again.
   std::optional<Judgement> bring_to_start(const Case& one, Profile profile) {
-    if (const auto known = out_of_reach_.find(one.start); known != out_of_reach_.end()) {
-      return known->second;
+    auto known = out_of_reach_.find(one.start);
+    if (known == out_of_reach_.end()) {
+      bench_.begin(profile, options_.seed);
+      bench_.bring_to(one.start);
+      if (bench_.judgement().verdict == Verdict::kPass) return std::nullopt;
+      known = out_of_reach_.emplace(one.start, bench_.judgement()).first;
     }
-    bench_.begin(profile, options_.seed);
-    bench_.bring_to(one.start);
-    if (bench_.judgement().verdict == Verdict::kPass) return std::nullopt;
-    auto obstacle = bench_.judgement();
-    if (obstacle.verdict != Verdict::kSkipped) {
-      obstacle = {Verdict::kInconclusive,
-                  {},
-                  fmt::format("cannot reach its start, {}: {}", suite_.starts[one.start].name,
-                              wording_of(obstacle)),
-                  obstacle.is_silence};
-    }
-    out_of_reach_.emplace(one.start, obstacle);
-    return obstacle;
+    const auto& obstacle = known->second;
+    if (obstacle.verdict == Verdict::kSkipped) return obstacle;
+    return Judgement{Verdict::kInconclusive,
+                     {},
+                     fmt::format("cannot reach its start, {}: {}", suite_.starts[one.start].name,
+                                 wording_of(obstacle)),
+                     obstacle.is_silence};
+  }
+
+  /// What is wrong with a device that cannot be brought to a start belongs to no case, and must not
+  /// be lost among those that then show nothing.
+  void blame_start(std::uint8_t start) {
+    const auto obstacle = out_of_reach_.find(start);
+    if (obstacle == out_of_reach_.end() || obstacle->second.verdict != Verdict::kFail) return;
+    if (!blamed_.insert(start).second) return;
+    ReportRow row;
+    row.verdict = Verdict::kFail;
+    row.name = fmt::format("{}.start", suite_.device);
+    row.summary =
+        fmt::format("the device can be brought to the start {}", suite_.starts[start].name);
+    row.expected = obstacle->second.expected;
+    row.actual = obstacle->second.actual;
+    row.evidence = bench_.last_exchange();
+    row.repeat = options_.command;
+    add(std::move(row));
+    has_failed_ = true;
   }
 
   /// Whether the device does what the shipped one is known to do instead.
@@ -240,6 +259,7 @@ class Run {
   const std::function<void(const ReportRow&)>& on_row_;
   Report report_;
   std::map<std::uint8_t, Judgement> out_of_reach_;  ///< start states, and why
+  std::set<std::uint8_t> blamed_;                   ///< those with a row of their own
   bool is_alive_ = false;
   bool has_failed_ = false;
 };

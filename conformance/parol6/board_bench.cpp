@@ -314,7 +314,7 @@ void BoardBench::home() {
           return is_homed(answer);
         },
         kHomingTime);
-    if (!finished) fail("all joints homed", "not within 90 s");
+    if (!finished) leave_open("not all joints are homed within 90 s; are arm and switches there?");
     origin_ = kStandby;
     act(idle());
   }

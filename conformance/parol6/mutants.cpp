@@ -16,6 +16,7 @@ constexpr std::string_view kUndefined = "the gripper gives the bit no meaning";
 constexpr std::string_view kNobodyThere =
     "no gripper answers then, as if there were none on the board's CAN";
 constexpr std::string_view kDoesNothing = "neither code does anything in this state";
+constexpr std::string_view kAfresh = "homing begins anew without an enable, too";
 constexpr std::array kEquivalents{
     EquivalentFault{"bit-high:homed.1", kAlwaysOne},
     EquivalentFault{"bit-high:homed.0", kAlwaysOne},
@@ -100,6 +101,8 @@ constexpr std::array kEquivalents{
     EquivalentFault{"row:disabled.unknown.disable", kDoesNothing},
     EquivalentFault{"row:homing.home.kept", "home and idle both go on with homing"},
     EquivalentFault{"row:homing.home.idle", "home and idle both go on with homing"},
+    EquivalentFault{"row:enabled.enable.unknown", kAfresh, Profile::kDocumented},
+    EquivalentFault{"row:enabled.enable.idle", kAfresh, Profile::kDocumented},
 };
 
 constexpr std::array kHints{

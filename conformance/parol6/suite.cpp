@@ -43,7 +43,7 @@ Suite suite() noexcept {
       Chapter{"Between the chapters", {}, between_cases()},
       Chapter{"Host programs", host_requirements(), {}},
   };
-  return {"parol6", "0.2", kChapters, kStarts, open};
+  return {"parol6", "0.3", kChapters, kStarts, open};
 }
 
 }  // namespace armjig::parol6

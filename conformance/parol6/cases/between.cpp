@@ -71,7 +71,7 @@ void unknown_leaves_enabled(BoardBench& board) {
 }
 
 void disabled_keeps_speeds(BoardBench& board) {
-  board.act(with_speeds(255, {}));
+  board.act(jog(4, 1000));
   const auto before = board.act(with_code(102));
   for (const int code : {42, 100, 102, 103, 123, 156}) {
     board.act(with_speeds(code, kSomeSpeeds));

@@ -94,6 +94,16 @@ void follows(BoardBench& board) {
   }
 }
 
+void latest(BoardBench& board) {
+  prepare(board, 0);
+  const auto far = to(150);
+  board.about("a gripper that moved on in silence");
+  board.keep_asking(with_gripper(far), 100ms);
+  board.pause(kWholeWay);
+  board.act(with_gripper(far));
+  expect_at(board, board.ask(with_gripper(far)), 150);
+}
+
 void position_map(BoardBench& board) {
   prepare(board, 0);
   for (const int place : {255, 200, 128, 64, 1, 0}) {
@@ -436,6 +446,8 @@ constexpr Case kCases[] = {
          kFull, "activated"),
     grip("parol6.gripper.moves-when", "A gripper that is not told to go stands.",
          on<not_told_to_go>, kFull, "told"),
+    grip("parol6.gripper.latest", "The second answer after a pause shows where it has gone.",
+         on<latest>),
     grip("parol6.gripper.follows", "The gripper goes to 120 and to 30.", on<follows>),
     grip("parol6.gripper.position-map", "Six positions are reached.", on<position_map>, kFull),
     grip("parol6.gripper.status-bits", "Three bits of the status follow the command.",

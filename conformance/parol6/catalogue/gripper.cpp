@@ -10,6 +10,9 @@ constexpr Requirement kRequirements[] = {
     {"parol6.gripper.before-answer", Level::kMust,
      "Before the gripper's first answer telemetry has gripper position 0, current 2 mA, status 01.",
      "firmware"},
+    {"parol6.gripper.latest", Level::kMust,
+     "Telemetry shows what the gripper answered to the frame before.",
+     "firmware: every frame asks the gripper"},
     {"parol6.gripper.follows", Level::kMust,
      "Set-points in mode 0 move a calibrated gripper to their position, and telemetry shows it "
      "there.",

@@ -290,6 +290,12 @@ void add_manners(std::vector<Quirk>& all) {
     if (memory.number > 3) saying.text.clear();
   };
   all.push_back(std::move(reserved));
+  Quirk first_only{.name = "serves-the-first-client-only", .section = "Connections"};
+  first_only.leave = [](std::string&, QuirkMemory& memory) { memory.number = 1; };
+  first_only.say = [](Saying& saying, QuirkMemory& memory, State) {
+    if (memory.number != 0) saying.text.clear();
+  };
+  all.push_back(std::move(first_only));
   all.push_back(greets("greets", "Accepted\r\n", 1));
   all.push_back(greets("beats-at-once", "Heartbeat:3\r\n", 1));
   all.push_back(greets("tells-that-it-is-busy", "Rejected\r\n", 2));

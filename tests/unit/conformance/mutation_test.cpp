@@ -42,7 +42,7 @@ std::vector<NamedFault> sample() {
 }
 
 TEST(Mutation, ThereAreAtLeast200GeneratedBoardsAndMostAreNotEquivalent) {
-  const auto all = mutants_of(entry_of("parol6"));
+  const auto all = mutants_of(entry_of("parol6"), Profile::kFirmware);
   const auto due = std::ranges::count_if(all, &std::string::empty, &Mutant::equivalent);
   EXPECT_GE(due, 200);
 }
@@ -50,6 +50,23 @@ TEST(Mutation, ThereAreAtLeast200GeneratedBoardsAndMostAreNotEquivalent) {
 TEST(Mutation, KillsASampleOfFaultyBoards) {
   auto entry = entry_of("parol6");
   entry.faults = sample;
+  EXPECT_THAT(findings(suite_of("parol6"), entry, {.proves_requirements = false}),
+              testing::IsEmpty());
+}
+
+TEST(Mutation, ExcusesUnderTheDocumentWhatOnlyShippedDevicesAreHeldTo) {
+  auto entry = entry_of("parol6");
+  entry.faults = sample;
+  const MutationOptions documented{.profile = Profile::kDocumented, .proves_requirements = false};
+  EXPECT_THAT(findings(suite_of("parol6"), entry, documented), testing::IsEmpty());
+}
+
+/// A board that nothing gets out of homing.
+std::vector<NamedFault> endless_homing() { return {{"row:homing.enable.kept", "Commands"}}; }
+
+TEST(Mutation, FindsABoardThatCannotBeBroughtToAStart) {
+  auto entry = entry_of("parol6");
+  entry.faults = endless_homing;
   EXPECT_THAT(findings(suite_of("parol6"), entry, {.proves_requirements = false}),
               testing::IsEmpty());
 }

@@ -21,7 +21,8 @@ class NumberBench final : public Bench {
   bool is_alive() override { return !is_dead; }
   void bring_to(std::size_t start) override {
     visited.push_back(start);
-    if (start == kUnreachable) fail("the state", "another one");
+    if (start != kUnreachable) return;
+    leaves_beyond_open ? leave_open("no hand") : fail("the state", "another one");
   }
   void measure_noise() override { ++measured; }
   [[nodiscard]] Duration noise() const override { return 3us; }
@@ -38,6 +39,7 @@ class NumberBench final : public Bench {
   int calls = 0;
   int measured = 0;
   bool is_dead = false;
+  bool leaves_beyond_open = false;
   bool obeys_firmware = true;
 
  protected:
@@ -168,10 +170,20 @@ TEST(ConformanceRun, GoesFromStartStateToStartState) {
 TEST(ConformanceRun, GivesUpAStartStateOnce) {
   NumberBench bench;
   const auto report = run(bench, "n.beyond");
-  EXPECT_THAT(verdicts(report), ElementsAre("n.beyond.a inconclusive", "n.beyond.b inconclusive"));
-  EXPECT_THAT(report.rows[1].actual, HasSubstr("beyond reach"));
+  EXPECT_THAT(verdicts(report),
+              ElementsAre("n.start fail", "n.beyond.a inconclusive", "n.beyond.b inconclusive"));
+  EXPECT_THAT(report.rows[0].summary, HasSubstr("beyond reach"));
+  EXPECT_THAT(report.rows[2].actual, HasSubstr("beyond reach"));
+  EXPECT_EQ(conclusion_of(report), Conclusion::kFindings) << "a sound device can be brought there";
   EXPECT_EQ(bench.visited.size(), 1U);
   EXPECT_THAT(bench.ran, IsEmpty());
+}
+
+TEST(ConformanceRun, BlamesNobodyForAStartStateThatIsLeftOpen) {
+  NumberBench bench;
+  bench.leaves_beyond_open = true;
+  const auto report = run(bench, "n.beyond");
+  EXPECT_THAT(verdicts(report), ElementsAre("n.beyond.a inconclusive", "n.beyond.b inconclusive"));
 }
 
 TEST(ConformanceRun, SkipsWhatIsNotAllowed) {
