@@ -247,7 +247,7 @@ void unlimited(BoardBench& board) {
   auto targets = board.ask(idle()).position;
   targets[kJ5] = Steps{6900};
   board.about("a go-to of j5 to 6900");
-  board.expect(board.keep_asking(go_to(targets), 1500ms), "position.j5", 6900);
+  board.expect(board.keep_asking(go_to(targets), 3s), "position.j5", 6900);
 }
 
 constexpr Case kCases[] = {

@@ -82,7 +82,7 @@ void no_ramp(BoardBench& board) {
   board.act(idle());
   board.about("10 ms after rest, at 10000 steps/s");
   board.expect(after, "speed.j6", 10'000);
-  board.expect_between(after, "position.j6", before.position[kJ6].value + 45, INT32_MAX);
+  board.expect_between(after, "position.j6", before.position[kJ6].value + 30, INT32_MAX);
 }
 
 void first_step(BoardBench& board) {
@@ -244,7 +244,7 @@ constexpr Case kCases[] = {
      .hazard = Hazard::kMove,
      .start = kEnabled},
     {.requirement = "parol6.jog.no-ramp",
-     .rule = "J6 has made 45 steps 10 ms after rest.",
+     .rule = "J6 has made 30 steps 10 ms after rest.",
      .run = on<no_ramp>,
      .hazard = Hazard::kMove,
      .start = kEnabled},
