@@ -50,7 +50,7 @@ Suite suite() noexcept {
       Chapter{"Deaths", death_requirements(), death_cases()},
       Chapter{"Client programs", host_requirements(), {}},
   };
-  return {"kinovazed", "0.1", kChapters, kStarts, open};
+  return {"kinovazed", "0.2", kChapters, kStarts, open};
 }
 
 }  // namespace armjig::kinovazed

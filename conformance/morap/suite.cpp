@@ -36,7 +36,7 @@ Suite suite() noexcept {
       Chapter{"Pen", pen_requirements(), {}},
       Chapter{"Masters", host_requirements(), {}},
   };
-  return {"morap", "0.1", kChapters, kStarts, open_node};
+  return {"morap", "0.2", kChapters, kStarts, open_node};
 }
 
 }  // namespace armjig::morap

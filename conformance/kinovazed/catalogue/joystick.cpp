@@ -56,7 +56,7 @@ constexpr Requirement kRequirements[] = {
      "server.",
      "server, recording defect-mode-change-too-soon", Profiles::kFirmware,
      "kinovazed.mode.no-guard"},
-    {"kinovazed.mode.no-guard", Level::kMust,
+    {"kinovazed.mode.no-guard", Level::kShould,
      "A mode that is written within 500 ms of another one, by way of EStop, is set like "
      "any other.",
      "document is silent; our choice", Profiles::kDocumented, "kinovazed.mode.guard"},

@@ -13,7 +13,7 @@ constexpr Requirement kRequirements[] = {
      "Lines of junk of any bytes are passed over, however many, and the next command is "
      "served.",
      "server; reference 3", Profiles::kFirmware, "kinovazed.robust.junk-rejected"},
-    {"kinovazed.robust.junk-rejected", Level::kMust,
+    {"kinovazed.robust.junk-rejected", Level::kShould,
      "Lines of junk are Rejected one by one, and the next command is served.",
      "document is silent; our reading", Profiles::kDocumented, "kinovazed.robust.junk"},
     {"kinovazed.robust.clients", Level::kMust,

@@ -81,7 +81,7 @@ constexpr Requirement kRequirements[] = {
     {"parol6.loop.last-of-burst", Level::kMust,
      "Of frames answered in one pass only the last one's command is acted on.",
      "firmware, vector B10", Profiles::kFirmware, "parol6.loop.each-of-burst"},
-    {"parol6.loop.each-of-burst", Level::kMust,
+    {"parol6.loop.each-of-burst", Level::kShould,
      "Each frame of a burst is acted on for at least one pass.", "document is silent; our choice",
      Profiles::kDocumented, "parol6.loop.last-of-burst"},
     {"parol6.loop.order", Level::kMust,

@@ -46,7 +46,7 @@ constexpr Requirement kRequirements[] = {
      "Set-points that arrive together with a calibration or a clear-error count as sent although "
      "they were not.",
      "firmware, vector G3", Profiles::kFirmware, "parol6.gripper.remembered-set-point"},
-    {"parol6.gripper.remembered-set-point", Level::kMust,
+    {"parol6.gripper.remembered-set-point", Level::kShould,
      "Set-points that arrive together with a calibration or a clear-error are sent with the next "
      "frame in mode 0.",
      "document is silent; our choice", Profiles::kDocumented, "parol6.gripper.forgotten-set-point"},

@@ -33,7 +33,7 @@ constexpr Requirement kRequirements[] = {
      "and reception goes on at the beginning of the store.",
      "firmware as built by the vendor; undefined behaviour", Profiles::kFirmware,
      "parol6.receive.length-zero-harmless"},
-    {"parol6.receive.length-zero-harmless", Level::kMust,
+    {"parol6.receive.length-zero-harmless", Level::kShould,
      "A length of 0 is no frame, and the good frame directly behind it is answered.",
      "document is silent; our choice", Profiles::kDocumented, "parol6.receive.length-zero"},
     {"parol6.receive.length-one", Level::kMust,
@@ -43,7 +43,7 @@ constexpr Requirement kRequirements[] = {
      "One start byte directly in front of a good frame costs that frame and the next four.",
      "firmware: the third start byte becomes a length of 255; vector R3", Profiles::kFirmware,
      "parol6.receive.resync"},
-    {"parol6.receive.resync", Level::kMust,
+    {"parol6.receive.resync", Level::kShould,
      "Of a run of start bytes the last three count, so that a stray one in front of a frame costs "
      "nothing.",
      "document is silent; our choice", Profiles::kDocumented, "parol6.receive.stray-start"},
@@ -51,7 +51,7 @@ constexpr Requirement kRequirements[] = {
      "A frame cut short is completed from the next one, which is lost with it; the one after that "
      "is answered.",
      "firmware, vector R9", Profiles::kFirmware, "parol6.receive.cut-harmless"},
-    {"parol6.receive.cut-harmless", Level::kMust,
+    {"parol6.receive.cut-harmless", Level::kShould,
      "A frame cut short does not take the next one with it.", "document is silent; our choice",
      Profiles::kDocumented, "parol6.receive.cut-short"},
 };

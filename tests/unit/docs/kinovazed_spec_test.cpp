@@ -46,12 +46,14 @@ std::set<std::string> documented() {
   return matches(page(), R"(\*\*`(kinovazed\.[a-z0-9.-]+)`\*\* [A-Z0-9])");
 }
 
+/// The server's level is left out where it is must.
 std::string sentence_of(const Requirement& requirement) {
+  const bool is_host = requirement.role == Role::kHost;
+  const bool has_level = is_host || requirement.level != Level::kMust;
+  const auto level = has_level ? fmt::format("{}; ", to_string(requirement.level)) : "";
   const auto brackets =
-      requirement.role == Role::kHost
-          ? fmt::format("{}; {}; {}", to_string(requirement.level), requirement.source,
-                        to_string(requirement.role))
-          : fmt::format("{}; {}", requirement.source, to_string(requirement.profiles));
+      fmt::format("{}{}; {}", level, requirement.source,
+                  is_host ? to_string(requirement.role) : to_string(requirement.profiles));
   return fmt::format("**`{}`** {} ({})", requirement.id, requirement.text, brackets);
 }
 
