@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,6 +47,7 @@ struct Chunk {
   Direction direction{};
   Instant time{};
   std::vector<std::byte> bytes;
+  std::uint32_t stream{};  ///< the connection; pieces of several do not belong together
 };
 
 Outcome<std::string> read_all(const std::string& path) {
@@ -73,9 +75,9 @@ Outcome<std::vector<Chunk>> chunks_of_trace(const std::string& path, const std::
   int unanswered = 0;
   for (const auto& event : trace->events) {
     if (event.dir == "to_device") {
-      chunks.push_back({Direction::kToDevice, event.time, event.bytes});
+      chunks.push_back({Direction::kToDevice, event.time, event.bytes, event.id});
     } else if (event.dir == "from_device") {
-      chunks.push_back({Direction::kFromDevice, event.time, event.bytes});
+      chunks.push_back({Direction::kFromDevice, event.time, event.bytes, event.id});
     } else if (event.dir == "write" || event.dir == "read") {
       auto message = bus_message_of(event);
       if (message.empty()) ++unanswered;
@@ -144,12 +146,14 @@ Exit decode(const Options& options) {
     (void)report(chunks.error());
     return Exit::kUsage;
   }
-  const auto dissector = entry->make();
+  std::map<std::uint32_t, std::unique_ptr<Dissector>> streams;
   std::vector<Message> messages;
   for (const auto& chunk : *chunks) {
+    auto& dissector = streams[chunk.stream];
+    if (!dissector) dissector = entry->make();
     dissector->feed(chunk.direction, chunk.time, chunk.bytes, messages);
   }
-  dissector->finish(messages);
+  for (const auto& [stream, dissector] : streams) dissector->finish(messages);
   bool all_are_messages = true;
   for (const auto& message : messages) {
     all_are_messages = all_are_messages && message.fault.empty();

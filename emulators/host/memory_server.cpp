@@ -112,6 +112,7 @@ class MemoryServer final : public SessionSource {
   explicit MemoryServer(std::unique_ptr<HostedServer> server) : wire_{std::move(server)} {}
 
   std::unique_ptr<SessionPort> make_port() override { return std::make_unique<MemoryPort>(wire_); }
+  [[nodiscard]] Instant now() const override { return wire_.now; }
   void pause(Duration duration) override { wire_.advance_to(wire_.now + duration); }
   bool touch(std::string_view input, std::int64_t value) override {
     return wire_.server->set_input(wire_.now, input, value);

@@ -19,8 +19,10 @@ class SessionSource {
   virtual ~SessionSource() = default;
 
   /// A port without a connection. Lives no longer than this. Each has a clock of its own; they only
-  /// agree in how fast they are.
+  /// agree in how fast they are, with each other and with `now`.
   [[nodiscard]] virtual std::unique_ptr<SessionPort> make_port() = 0;
+
+  [[nodiscard]] virtual Instant now() const = 0;
 
   /// Lets time pass while nobody reads.
   virtual void pause(Duration duration) = 0;

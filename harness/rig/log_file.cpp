@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "harness/capture/message_json.hpp"
@@ -23,7 +24,8 @@ Outcome<LogFile> LogFile::create(const std::string& path, std::string_view devic
 LogFile::LogFile(std::ofstream file) : file_{std::move(file)} {}
 
 void LogFile::add(Instant time, std::string_view keys, std::span<const Message> messages) {
-  file_ << fmt::format(R"({{"t_us":{},{})", microseconds(time), keys);
+  last_ = std::max(last_, time);
+  file_ << fmt::format(R"({{"t_us":{},{})", microseconds(last_), keys);
   const char* separator = ",\"messages\":[";
   for (const auto& message : messages) {
     file_ << separator << to_json(message);

@@ -19,13 +19,16 @@ class LogFile {
   /// Problems: the file cannot be written.
   [[nodiscard]] static Outcome<LogFile> create(const std::string& path, std::string_view device);
 
-  /// `keys` is what stands behind the time, JSON without the braces; `messages` ended there.
+  /// `keys` is what stands behind the time, JSON without the braces; `messages` ended there. A time
+  /// in front of the last one, as clocks that were read one after the other may have it, is taken
+  /// for that.
   void add(Instant time, std::string_view keys, std::span<const Message> messages = {});
 
  private:
   explicit LogFile(std::ofstream file);
 
   std::ofstream file_;
+  Instant last_{};
 };
 
 }  // namespace armjig

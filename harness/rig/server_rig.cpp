@@ -29,9 +29,9 @@ Outcome<ServerRig> ServerRig::open(std::string_view device, const RigOptions& op
   rig.port_ = *std::move(port);
   if (!options.wire_log.empty()) {
     const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
-    auto logged = LoggedSession::log(std::move(rig.port_), options.wire_log, *entry);
-    if (!logged) return tl::unexpected{logged.error()};
-    rig.port_ = *std::move(logged);
+    auto log = SessionLog::create(options.wire_log, *entry);
+    if (!log) return tl::unexpected{log.error()};
+    rig.port_ = std::make_unique<LoggedSession>(std::move(rig.port_), *std::move(log));
   }
   if (!options.target.is_emulated()) {
     const auto judge = std::ranges::find(judges(), device, &JudgeEntry::device);

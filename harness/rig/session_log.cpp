@@ -10,27 +10,26 @@
 
 namespace armjig {
 
-Outcome<std::unique_ptr<SessionPort>> LoggedSession::log(std::unique_ptr<SessionPort> port,
-                                                         const std::string& path,
-                                                         const DissectorEntry& device) {
+Outcome<std::shared_ptr<SessionLog>> SessionLog::create(const std::string& path,
+                                                        const DissectorEntry& device) {
   auto file = LogFile::create(path, device.device);
   if (!file) return tl::unexpected{file.error()};
-  return std::unique_ptr<SessionPort>{new LoggedSession{std::move(port), *std::move(file), device}};
+  return std::make_shared<SessionLog>(SessionLog{*std::move(file), device});
 }
 
-LoggedSession::LoggedSession(std::unique_ptr<SessionPort> port, LogFile file,
-                             const DissectorEntry& device)
-    : port_{std::move(port)}, file_{std::move(file)}, device_{device} {}
+LoggedSession::LoggedSession(std::unique_ptr<SessionPort> port, std::shared_ptr<SessionLog> log,
+                             Duration offset)
+    : port_{std::move(port)}, log_{std::move(log)}, offset_{offset} {}
 
 Result<void> LoggedSession::connect(Instant deadline) {
   const auto connected = port_->connect(deadline);
   const bool is_refused = !connected && connected.error().code == ErrorCode::kRefused;
   if (!connected && !is_refused) return connected;
-  ++connection_;
+  connection_ = log_->connections++;
   is_open_ = !is_refused;
-  dissector_ = device_.make();
-  file_.add(now(), fmt::format(R"("dir":"connect","conn":{},"text":"{}")", connection_,
-                               is_refused ? "refused" : "ok"));
+  dissector_ = log_->device.make();
+  add(fmt::format(R"("dir":"connect","conn":{},"text":"{}")", connection_,
+                  is_refused ? "refused" : "ok"));
   return connected;
 }
 
@@ -68,21 +67,24 @@ void LoggedSession::reset() {
   write_end("client-reset");
 }
 
+void LoggedSession::add(std::string_view keys, std::span<const Message> messages) {
+  log_->file.add(time(), keys, messages);
+}
+
 void LoggedSession::write_end(std::string_view how) {
   if (std::exchange(is_open_, false)) write_disconnect(how);
 }
 
 void LoggedSession::write_disconnect(std::string_view how) {
-  file_.add(now(), fmt::format(R"("dir":"disconnect","conn":{},"text":"{}")", connection_, how));
+  add(fmt::format(R"("dir":"disconnect","conn":{},"text":"{}")", connection_, how));
 }
 
 void LoggedSession::write_bytes(Direction direction, Bytes bytes) {
   std::vector<Message> messages;
-  dissector_->feed(direction, now(), bytes, messages);
-  file_.add(now(),
-            fmt::format(R"("dir":"{}","conn":{},"hex":"{}")", to_string(direction), connection_,
-                        to_hex(bytes)),
-            messages);
+  dissector_->feed(direction, time(), bytes, messages);
+  add(fmt::format(R"("dir":"{}","conn":{},"hex":"{}")", to_string(direction), connection_,
+                  to_hex(bytes)),
+      messages);
 }
 
 }  // namespace armjig

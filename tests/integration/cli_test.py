@@ -59,8 +59,13 @@ def rows(folder):
              for name, line in WRONG_LINES.items()}
     binary = folder / "binary.rbt"
     binary.write_bytes(bytes(range(256)))
+    two = folder / "two.jsonl"  # clients whose bytes come in between each other's
+    two.write_text('{"format":"golden-trace/1","device":"kinovazed"}\n' + "".join(
+        f'{{"t_us":{time},"dir":"to_device","conn":{connection},"hex":"{text.encode().hex()}"}}\n'
+        for time, (connection, text) in enumerate([(0, "ESt"), (1, "Freeze\r\n"), (0, "op\r\n")])))
     silent = folder / "wire.jsonl"
     logged = folder / "bus.jsonl"
+    served = folder / "server.jsonl"
     return [
         # Misuse: one clear line, exit code 2.
         ("", "", 2, ["!subcommand is required"]),
@@ -114,6 +119,11 @@ def rows(folder):
          ["poke", "cut short", "!transactions without an answer"]),
         (f"decode morap --file {SOURCE}/captures/morap/loop-voltage.jsonl --json", "", 0,
          ["read_current"]),
+        (f"decode kinovazed --file {two}", "", 0, ["Freeze", "EStop"]),
+        (f"conformance kinovazed --target emulated: --filter connection --wire-log {served}", "", 0,
+         [" passed, 0 failed"]),
+        (f"decode kinovazed --file {served} --json", "", 1,  # an empty line is one of the cases
+         ['"t_us"', "Heartbeat"]),
         ("morap tune --type pd --inertia 0.2 --pole -9", "", 0,  # reference vector 42
          ["2200cdcc4c3e000010c1", "00900102364b03c1513f1441022c4b03c1473f144101fed774bf000000001a"]),
         ("morap read-params --target emulated:", "", 0, ["d = [-1.5711", "rate_hz = 500"]),

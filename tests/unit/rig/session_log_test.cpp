@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/rig/session_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "emulators/host/devices.hpp"
+#include "harness/capture/trace.hpp"
+#include "harness/rig/session_rig.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+class SessionLogTest : public testing::Test {
+ protected:
+  ~SessionLogTest() override { fs::remove(path_); }
+
+  [[nodiscard]] std::unique_ptr<SessionSource> logged_server() const {
+    RigOptions options;
+    options.target = parse_target("emulated:").value();
+    options.wire_log = path_;
+    return std::move(open_server("kinovazed", options, hosted_server("kinovazed").open).value());
+  }
+  [[nodiscard]] std::vector<TraceEvent> events() const { return read_trace(path_).value().events; }
+  /// Direction, connection and text of each line.
+  [[nodiscard]] std::vector<std::string> lines() const {
+    std::vector<std::string> all;
+    for (const auto& event : events()) {
+      const auto json = nlohmann::json::parse(event.json);
+      all.push_back(event.dir + " " + std::to_string(event.id) + " " + json.value("text", ""));
+    }
+    return all;
+  }
+
+  std::string path_ =
+      fs::temp_directory_path() / ("armjig-session-log-" + std::to_string(::getpid()));
+};
+
+void say(SessionPort& port, std::string_view line) {
+  ASSERT_TRUE(port.send(std::as_bytes(std::span{line})));
+}
+
+void hear(SessionPort& port) {
+  std::array<std::byte, 256> buffer;
+  ASSERT_TRUE(port.receive(buffer, port.now() + 500ms));
+}
+
+TEST_F(SessionLogTest, NumbersTheConnectionsOfOneServer) {
+  {
+    const auto server = logged_server();
+    const auto one = server->make_port();
+    const auto two = server->make_port();
+    ASSERT_TRUE(one->connect(one->now()));
+    ASSERT_TRUE(two->connect(two->now()));
+    say(*one, "QuitEStop\r\n");
+    hear(*one);
+    two->reset();
+    one->half_close();
+    one->close();
+    ASSERT_TRUE(two->connect(two->now()));
+  }
+  EXPECT_THAT(lines(),
+              testing::ElementsAre("connect 0 ok", "connect 1 ok", "to_device 0 ", "from_device 0 ",
+                                   "disconnect 1 client-reset", "disconnect 0 client-half-close",
+                                   "disconnect 0 client-close", "connect 2 ok",
+                                   "disconnect 2 client-close"));
+}
+
+TEST_F(SessionLogTest, SaysWhatWasMeant) {
+  const auto server = logged_server();
+  const auto port = server->make_port();
+  ASSERT_TRUE(port->connect(port->now()));
+  say(*port, "Quit");
+  say(*port, "EStop\r\n");
+  const auto all = events();
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_FALSE(nlohmann::json::parse(all[1].json).contains("messages"));
+  EXPECT_EQ(nlohmann::json::parse(all[2].json)["messages"].size(), 1U);
+}
+
+TEST_F(SessionLogTest, HasWhatAHandDoes) {
+  const auto server = logged_server();
+  ASSERT_TRUE(server->touch("arm.plugged", 0));
+  ASSERT_FALSE(server->touch("arm.foot", 0));
+  const auto all = events();
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].dir, "input");
+  EXPECT_EQ(all[0].name, "arm.plugged");
+}
+
+/// A port that was made later, as real ones are, whose clock begins anew.
+class LatePort final : public SessionPort {
+ public:
+  Result<void> connect(Instant /*deadline*/) override { return {}; }
+  Result<void> send(Bytes /*segment*/) override { return {}; }
+  Result<Received> receive(std::span<std::byte> /*into*/, Instant /*deadline*/) override {
+    return Received{Arrival::kEnd, 0};
+  }
+  void half_close() override {}
+  void close() override {}
+  void reset() override {}
+  [[nodiscard]] Instant now() const override { return at(1ms); }
+};
+
+TEST_F(SessionLogTest, WritesTheTimesOfAllPortsByOneClock) {
+  const auto& kinovazed = *std::ranges::find(dissectors(), "kinovazed", &DissectorEntry::device);
+  const auto log = SessionLog::create(path_, kinovazed).value();
+  LoggedSession late{std::make_unique<LatePort>(), log, 500ms};
+  LoggedSession early{std::make_unique<LatePort>(), log};
+  ASSERT_TRUE(late.connect({}));
+  ASSERT_TRUE(early.connect({}));
+  const auto all = events();
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].time, at(501ms));
+  EXPECT_EQ(all[1].time, at(501ms)) << "a recording's time never runs backwards";
+}
+
+}  // namespace
+}  // namespace armjig
