@@ -24,7 +24,8 @@ namespace armjig {
 namespace {
 
 constexpr std::uint64_t kSeed = 1;
-/// The profile that demands most, and for which the equivalent faults are known.
+/// The mutants were made for it: what it is held to tells what a fault breaks elsewhere, and most
+/// equivalent faults are known for it.
 constexpr Profile kShipped = Profile::kFirmware;
 
 using Cases = std::vector<const Case*>;

@@ -54,9 +54,9 @@ class ProgramCheck::Overheard final : public HostedStream {
     heard_ = 0;
   }
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
-    const bool is_known = device_->set_input(time, name, value);
+    const bool is_taken = device_->set_input(time, name, value);
     overhear_sent();
-    return is_known;
+    return is_taken;
   }
 
  private:
@@ -120,9 +120,9 @@ class ProgramCheck::OverheardServer final : public HostedServer {
     heard_ = 0;
   }
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
-    const bool is_known = server_->set_input(time, name, value);
+    const bool is_taken = server_->set_input(time, name, value);
     overhear_sent();
-    return is_known;
+    return is_taken;
   }
   [[nodiscard]] std::vector<std::string> take_log() override { return server_->take_log(); }
 

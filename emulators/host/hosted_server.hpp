@@ -41,7 +41,8 @@ class HostedServer {
   [[nodiscard]] virtual std::optional<Instant> next_event() const = 0;
   [[nodiscard]] virtual std::span<const Event> sent() const = 0;
   virtual void clear_sent() = 0;
-  /// Does at the server's machine what no client can. False: nothing has that name.
+  /// Does at the server's machine what no client can. False: nothing has that name and takes the
+  /// value.
   [[nodiscard]] virtual bool set_input(Instant time, std::string_view name, std::int64_t value) = 0;
   /// What the server has written to its log since the last call.
   [[nodiscard]] virtual std::vector<std::string> take_log() = 0;

@@ -26,7 +26,7 @@ class HostedStream {
   [[nodiscard]] virtual std::optional<Instant> next_event() const = 0;
   [[nodiscard]] virtual std::span<const SentBytes> sent() const = 0;
   virtual void clear_sent() = 0;
-  /// Does beside the device what no client can. False: nothing has that name.
+  /// Does beside the device what no client can. False: nothing has that name and takes the value.
   [[nodiscard]] virtual bool set_input(Instant time, std::string_view name, std::int64_t value) = 0;
 };
 
