@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+#include <span>
+#include <string>
 
 #include "harness/core/error.hpp"
 
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
+class App;
+}
+
 namespace armjig::cli {
+
+struct Device;
+using Devices = std::span<const Device>;
 
 /// The exit codes of every subcommand (docs/cli.md).
 enum class Exit : int {
@@ -22,27 +30,31 @@ enum class Exit : int {
 /// What a subcommand does once its arguments are parsed.
 using Action = std::function<Exit()>;
 
-/// Adds a subcommand to `app`. When it is the one chosen, `action` is set to what it does.
-using AddCommand = void (*)(CLI::App& app, Action& action);
+/// Adds a subcommand about any of `devices` to `app`. When it is the one chosen, `action` is set to
+/// what it does.
+using AddCommand = void (*)(CLI::App& app, Devices devices, Action& action);
 
-void add_completion(CLI::App& app, Action& action);
-void add_conformance(CLI::App& app, Action& action);
-void add_console(CLI::App& app, Action& action);
-void add_decode(CLI::App& app, Action& action);
-void add_devices(CLI::App& app, Action& action);
-void add_doctor(CLI::App& app, Action& action);
-void add_emulate(CLI::App& app, Action& action);
-void add_i2c(CLI::App& app, Action& action);
-void add_kin(CLI::App& app, Action& action);
-void add_lab(CLI::App& app, Action& action);
-void add_morap(CLI::App& app, Action& action);
-void add_plan(CLI::App& app, Action& action);
-void add_run(CLI::App& app, Action& action);
-void add_script(CLI::App& app, Action& action);
-void add_trace(CLI::App& app, Action& action);
-void add_watch(CLI::App& app, Action& action);
+void add_completion(CLI::App& app, Devices devices, Action& action);
+void add_conformance(CLI::App& app, Devices devices, Action& action);
+void add_console(CLI::App& app, Devices devices, Action& action);
+void add_decode(CLI::App& app, Devices devices, Action& action);
+void add_devices(CLI::App& app, Devices devices, Action& action);
+void add_doctor(CLI::App& app, Devices devices, Action& action);
+void add_emulate(CLI::App& app, Devices devices, Action& action);
+void add_kin(CLI::App& app, Devices devices, Action& action);
+void add_lab(CLI::App& app, Devices devices, Action& action);
+void add_trace(CLI::App& app, Devices devices, Action& action);
+void add_watch(CLI::App& app, Devices devices, Action& action);
 
 /// Prints the problem as one line on standard error and answers the exit code that goes with it.
 [[nodiscard]] Exit report(const Problem& problem);
+
+/// Adds the argument that names the device. Whatever is said is taken: `find_device` refuses it in
+/// its own words.
+void add_device_argument(CLI::App& command, std::string& device, Devices devices);
+
+/// A help text with `DEVICE` replaced by the name of the first device, so that its examples can be
+/// tried.
+[[nodiscard]] std::string with_example(std::string text, Devices devices);
 
 }  // namespace armjig::cli

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include <CLI/CLI.hpp>
+
 #include "cli/command.hpp"
 
 namespace armjig::cli {
@@ -57,7 +59,7 @@ void print_script(const CLI::App& app, const std::string& shell) {
 
 }  // namespace
 
-void add_completion(CLI::App& app, Action& action) {
+void add_completion(CLI::App& app, Devices /*devices*/, Action& action) {
   auto* completion = app.add_subcommand("completion", kHelp);
   const auto shell = std::make_shared<std::string>();
   completion->add_option("SHELL", *shell, "bash or zsh")

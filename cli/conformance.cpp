@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
+#include <CLI/CLI.hpp>
+
 #include "cli/conformance_mutants.hpp"
+#include "cli/device.hpp"
 #include "cli/report_files.hpp"
 #include "cli/target_options.hpp"
 #include "conformance/run.hpp"
@@ -24,11 +26,11 @@ namespace {
 constexpr auto kHelp =
     "Checks a device against the requirements of its protocol.\n"
     "\n"
-    "  armjig conformance parol6 --target emulated:          the emulator, in virtual time\n"
-    "  armjig conformance parol6 --target pty:/tmp/parol6    whatever is behind that terminal\n"
-    "  armjig conformance parol6 --target 'emulated:?fault=swap-bytes:speed.j1'   a faulty board\n"
-    "  armjig conformance parol6 --list                      the requirements, one a line\n"
-    "  armjig conformance parol6 --explain parol6.frame.burst\n"
+    "  armjig conformance DEVICE --target emulated:          the emulator, in virtual time\n"
+    "  armjig conformance DEVICE --target pty:/tmp/arm       whatever is behind that terminal\n"
+    "  armjig conformance DEVICE --target 'emulated:?fault=NAME'   a faulty one; see 'mutants'\n"
+    "  armjig conformance DEVICE --list                      the requirements, one per line\n"
+    "  armjig conformance DEVICE --explain REQUIREMENT       what one demands, and why\n"
     "  armjig conformance diff before.json after.json        what a change has done\n"
     "\n"
     "On a device that is not emulated only what cannot move or switch anything is run; --allow\n"
@@ -144,14 +146,14 @@ void print_skipped(const Report& result) {
   fmt::print("skipped: {}\n", text.substr(2));
 }
 
-Exit run(const Suite& suite, Options options) {
+Exit run(const Device& device, const Suite& suite, Options options) {
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
   const bool names_profile = how->target.options.contains("profile");
   if (how->target.is_emulated() && !names_profile && options.run.profile != Profile::kFirmware) {
     how->target.options["profile"] = options.profile;
   }
-  const auto bench = suite.open(*how);
+  const auto bench = open_bench(device, *how);
   if (!bench) return report(bench.error());
   options.run.permissions = how->target.is_emulated() ? Permissions::all() : how->permissions;
   options.run.target = how->target.text;
@@ -171,27 +173,23 @@ Exit run(const Suite& suite, Options options) {
   return static_cast<Exit>(conclusion_of(result));
 }
 
-Exit conformance(Options options) {
-  const auto suite = std::ranges::find(suites(), options.device, &Suite::device);
-  if (suite == suites().end()) {
-    std::string names;
-    for (const auto& one : suites()) names += fmt::format(" {}", one.device);
-    return report({ErrorCode::kUnknownDevice, fmt::format("'{}'", options.device),
-                   "say which device:" + names});
-  }
-  if (const auto completed = complete(*suite, options); !completed) {
+Exit conformance(Devices devices, Options options) {
+  const auto device = find_device(devices, options.device);
+  if (!device) return report(device.error());
+  const auto suite = (*device)->suite();
+  if (const auto completed = complete(suite, options); !completed) {
     return report(completed.error());
   }
-  if (!options.explain.empty()) return explain(*suite, options.explain);
-  if (options.list) return list_requirements(*suite, options);
-  if (select(*suite, options.run.profile, options.run.selection).empty()) {
+  if (!options.explain.empty()) return explain(suite, options.explain);
+  if (options.list) return list_requirements(suite, options);
+  if (select(suite, options.run.profile, options.run.selection).empty()) {
     const auto& filter = options.run.selection.filter;
     (void)report({ErrorCode::kBadValue,
                   filter.empty() ? "--shard " + options.shard : "--filter " + filter,
                   "it selects no case of this profile and tier; --list shows the requirements"});
     return Exit::kNothing;
   }
-  return run(*suite, std::move(options));
+  return run(**device, suite, std::move(options));
 }
 
 Outcome<std::string> read_file(const std::string& path) {
@@ -228,10 +226,10 @@ void add_diff(CLI::App& conformance, Action& action) {
 
 }  // namespace
 
-void add_conformance(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("conformance", kHelp);
+void add_conformance(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("conformance", with_example(kHelp, devices));
   const auto options = std::make_shared<Options>();
-  command->add_option("DEVICE", options->device, "which suite");
+  command->add_option("DEVICE", options->device, "which one: " + names_of(devices))->type_name("");
   add_target_options(*command, options->target);
   command
       ->add_option("--profile", options->profile,
@@ -252,10 +250,10 @@ void add_conformance(CLI::App& app, Action& action) {
   add_report_files(*command, options->files);
   command->add_flag("--list", options->list, "name the requirements and stop");
   add_diff(*command, action);
-  add_conformance_mutants(*command, action);
-  command->callback([options, command, &action] {
+  add_conformance_mutants(*command, devices, action);
+  command->callback([options, command, devices, &action] {
     if (!command->get_subcommands().empty()) return;
-    action = [options] { return conformance(*options); };
+    action = [options, devices] { return conformance(devices, *options); };
   });
 }
 

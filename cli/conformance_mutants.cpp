@@ -3,12 +3,15 @@
 
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <thread>
 #include <utility>
 
+#include "cli/device.hpp"
+#include "cli/report_files.hpp"
 #include "conformance/mutation.hpp"
 
 namespace armjig::cli {
@@ -43,8 +46,10 @@ Exit list_mutants(const MutantsEntry& entry, Profile profile, const std::string&
   return Exit::kNothing;
 }
 
-Exit run(const Suite& suite, const MutantsEntry& entry, const Options& options) {
-  const auto result = run_mutants(suite, entry, options.run);
+Exit run(const Device& device, const MutantsEntry& entry, const Options& options) {
+  const auto suite = device.suite();
+  const auto open = [&device](const RigOptions& how) { return open_bench(device, how); };
+  const auto result = run_mutants(suite, entry, open, options.run);
   if (!result) return report(result.error());
   if (result->fates.empty()) {
     (void)report({ErrorCode::kBadValue, "--filter " + options.run.filter,
@@ -63,39 +68,33 @@ Exit run(const Suite& suite, const MutantsEntry& entry, const Options& options) 
   return static_cast<Exit>(conclusion_of(summary));
 }
 
-Exit mutants(Options options) {
-  const auto entry = std::ranges::find(armjig::mutants(), options.device, &MutantsEntry::device);
-  if (entry == armjig::mutants().end()) {
-    std::string names;
-    for (const auto& one : armjig::mutants()) names += fmt::format(" {}", one.device);
-    return report({ErrorCode::kUnknownDevice, fmt::format("'{}'", options.device),
-                   "there are mutants of:" + names});
-  }
+Exit mutants(Devices devices, Options options) {
+  const auto device = find_device(devices, options.device);
+  if (!device) return report(device.error());
+  const auto entry = (*device)->mutants();
   options.run.profile = options.profile == "documented" ? Profile::kDocumented : Profile::kFirmware;
-  if (options.list) return list_mutants(*entry, options.run.profile, options.run.filter);
+  if (options.list) return list_mutants(entry, options.run.profile, options.run.filter);
   options.run.proves_requirements = options.run.filter.empty();
-  return run(*std::ranges::find(suites(), options.device, &Suite::device), *entry, options);
+  return run(**device, entry, options);
 }
 
 }  // namespace
 
-void add_conformance_mutants(CLI::App& conformance, Action& action) {
+void add_conformance_mutants(CLI::App& conformance, Devices devices, Action& action) {
   auto* command = conformance.add_subcommand("mutants", kHelp);
   const auto options = std::make_shared<Options>();
   options->run.threads = std::max(1U, std::thread::hardware_concurrency());
-  command->add_option("DEVICE", options->device, "mutants of what")->required();
+  add_device_argument(*command, options->device, devices);
   command->add_option("--profile", options->profile, "of the device, and whose expectations")
       ->check(CLI::IsMember({"firmware", "documented"}));
   command->add_option("--filter", options->run.filter, "only mutants with this in their name");
   command->add_option("--threads", options->run.threads, "at most so many at once")
       ->check(CLI::Range(1, 256));
   command->add_flag("--list", options->list, "name the mutants and stop");
-  for (const auto& [option, path] :
-       {std::pair{"--json", &options->files.json}, std::pair{"--html", &options->files.html},
-        std::pair{"--junit", &options->files.junit}, std::pair{"--sarif", &options->files.sarif}}) {
-    command->add_option(option, *path, "also write the report to this file")->type_name("FILE");
-  }
-  command->callback([options, &action] { action = [options] { return mutants(*options); }; });
+  add_report_files(*command, options->files);
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return mutants(devices, *options); };
+  });
 }
 
 }  // namespace armjig::cli

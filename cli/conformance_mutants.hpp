@@ -6,6 +6,6 @@
 namespace armjig::cli {
 
 /// Adds `mutants` to the subcommand `conformance`.
-void add_conformance_mutants(CLI::App& conformance, Action& action);
+void add_conformance_mutants(CLI::App& conformance, Devices devices, Action& action);
 
 }  // namespace armjig::cli

@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,18 +14,14 @@
 #include <string_view>
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include "cli/command.hpp"
-#include "cli/device_console.hpp"
-#include "cli/kinovazed_console.hpp"
+#include "cli/device.hpp"
 #include "cli/line_editor.hpp"
-#include "cli/morap_console.hpp"
 #include "cli/pace.hpp"
-#include "cli/parol6_console.hpp"
 #include "cli/screen.hpp"
 #include "cli/signals.hpp"
 #include "cli/target_options.hpp"
+#include "harness/console/device_console.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -34,10 +31,9 @@ using namespace std::chrono_literals;
 constexpr auto kHelp =
     "Drives an arm by hand, or by commands from a pipe.\n"
     "\n"
-    "  armjig console parol6 --target emulated:                 try it: 'help' lists the commands\n"
-    "  armjig console parol6 --target pty:/tmp/parol6 --allow state,move\n"
-    "  echo 'home' | armjig console parol6 --target emulated:   in virtual time, at once\n"
-    "  armjig console kinovazed --target tcp:127.0.0.1:51717 --allow state,move,home\n"
+    "  armjig console DEVICE --target emulated:                 try it: 'help' lists the commands\n"
+    "  armjig console DEVICE --target pty:/tmp/arm --allow state,move\n"
+    "  echo 'status' | armjig console DEVICE --target emulated:   in virtual time, at once\n"
     "\n"
     "On a terminal: Tab completes, Up brings back earlier lines, Ctrl-C stops the arm, Ctrl-D\n"
     "leaves. From a pipe: one command a line, each to its end before the next, # begins a "
@@ -53,25 +49,6 @@ struct Options {
 };
 
 constexpr Duration kPeriod = 10ms;
-
-/// Brings the arm to a stand, at most for two seconds.
-Outcome<void> leave(DeviceConsole& console) {
-  console.stop();
-  const auto deadline = console.now() + 2s;
-  while (console.is_busy() && console.now() < deadline) {
-    if (auto cycled = console.cycle(); !cycled) return cycled;
-  }
-  return {};
-}
-
-/// Waits for a sign of life. False: none came in time.
-Outcome<bool> hears_the_device(DeviceConsole& console) {
-  const auto deadline = console.now() + console.hears_within();
-  while (!console.hears_the_device() && console.now() < deadline) {
-    if (const auto cycled = console.cycle(); !cycled) return tl::unexpected{cycled.error()};
-  }
-  return console.hears_the_device();
-}
 
 Problem silence(const Options& options, const DeviceConsole& console) {
   return {ErrorCode::kTimedOut, options.target.target, std::string{console.silence()}};
@@ -111,19 +88,34 @@ class PipeSession {
   PipeSession(const Options& options, InputLines::Patience patience)
       : options_{options}, patience_{patience} {}
 
-  Exit run(const ConsoleEntry& entry, const RigOptions& how) {
-    auto opened = entry.open(how, options_.target.target,
-                             [this](Tone tone, std::string_view text) { say(tone, text); });
-    if (!opened) return report(opened.error());
-    console_ = *std::move(opened);
-    const auto is_there = hears_the_device(*console_);
+  Exit run(DeviceConsole& console) {
+    console_ = &console;
+    const auto is_there = console_->find_device();
     if (!is_there) return report(is_there.error());
     if (!*is_there) return report(silence(options_, *console_));
     if (const auto done = run_commands(); !done) return report(done.error());
     line_ = 0;
-    if (const auto left = leave(*console_); !left) return report(left.error());
+    if (const auto left = console_->leave(); !left) return report(left.error());
     if (is_interrupted_) return Exit::kInterrupted;
     return has_run_ ? exit_ : Exit::kNothing;
+  }
+
+  void say(Tone tone, std::string_view text) {
+    switch (tone) {
+      case Tone::kAnswer:
+        if (line_ > 0) fmt::print("{}\n", text);
+        break;
+      case Tone::kEvent:
+        fmt::print("* {}\n", text);
+        break;
+      case Tone::kFailed:
+        complain(text, Exit::kFindings);
+        break;
+      case Tone::kUnreadable:
+        complain(text, Exit::kUsage);
+        break;
+    }
+    std::fflush(stdout);
   }
 
  private:
@@ -161,24 +153,6 @@ class PipeSession {
     return is_interrupted_;
   }
 
-  void say(Tone tone, std::string_view text) {
-    switch (tone) {
-      case Tone::kAnswer:
-        if (line_ > 0) fmt::print("{}\n", text);
-        break;
-      case Tone::kEvent:
-        fmt::print("* {}\n", text);
-        break;
-      case Tone::kFailed:
-        complain(text, Exit::kFindings);
-        break;
-      case Tone::kUnreadable:
-        complain(text, Exit::kUsage);
-        break;
-    }
-    std::fflush(stdout);
-  }
-
   void complain(std::string_view text, Exit exit) {
     if (line_ > 0) fmt::print(stderr, "line {}: {}\n", line_, text);
     if (line_ == 0) fmt::print(stderr, "at the end: {}\n", text);
@@ -189,7 +163,7 @@ class PipeSession {
   InputLines::Patience patience_;
   Signals signals_;
   InputLines input_;
-  std::unique_ptr<DeviceConsole> console_;
+  DeviceConsole* console_ = nullptr;
   int line_ = 0;  ///< of the input; 0: none
   bool has_run_ = false;
   bool is_interrupted_ = false;
@@ -199,16 +173,13 @@ class PipeSession {
 /// A person at a terminal.
 class TerminalSession {
  public:
-  explicit TerminalSession(const Options& options) : options_{options} {}
+  TerminalSession(const Options& options, bool is_emulated)
+      : options_{options}, is_emulated_{is_emulated} {}
 
-  Exit run(const ConsoleEntry& entry, const RigOptions& how) {
-    auto opened = entry.open(how, options_.target.target,
-                             [this](Tone tone, std::string_view text) { say(tone, text); });
-    if (!opened) return report(opened.error());
-    console_ = *std::move(opened);
-    pace_.emplace(how.target.is_emulated() ? Pace::By::kWallClock : Pace::By::kPort,
-                  console_->now());
-    greet(how);
+  Exit run(DeviceConsole& console) {
+    console_ = &console;
+    pace_.emplace(is_emulated_ ? Pace::By::kWallClock : Pace::By::kPort, console_->now());
+    greet();
     while (!console_->wants_to_quit() && !problem_) {
       const auto line = editor_.read_line([this] { return meanwhile(); });
       if (!line) break;
@@ -216,21 +187,27 @@ class TerminalSession {
     }
     is_leaving_ = true;
     if (!problem_) {
-      if (const auto left = leave(*console_); !left) problem_ = left.error();
+      if (const auto left = console_->leave(); !left) problem_ = left.error();
     }
     return problem_ ? report(*problem_) : Exit::kPassed;
   }
 
+  void say(Tone tone, std::string_view text) {
+    if (is_leaving_ && tone == Tone::kAnswer) return;
+    const auto* const mark = tone == Tone::kAnswer ? "" : tone == Tone::kEvent ? "* " : "! ";
+    editor_.print(fmt::format("{}{}\n", mark, text));
+  }
+
  private:
-  void greet(const RigOptions& how) {
+  void greet() {
     const auto& target = options_.target.target;
     fmt::print("{} at {}\n'help' lists the commands, Tab completes, Ctrl-C stops the arm.\n",
                options_.device, target);
-    if (!how.target.is_emulated() && options_.target.allow.empty()) {
+    if (!is_emulated_ && options_.target.allow.empty()) {
       fmt::print(
           "Nothing but looking is allowed: --allow state,move,home,grip lets you do more.\n");
     }
-    const auto is_there = hears_the_device(*console_);
+    const auto is_there = console_->find_device();
     if (!is_there) problem_ = is_there.error();
     if (is_there && !*is_there) fmt::print("{}\n", console_->silence());
   }
@@ -255,15 +232,10 @@ class TerminalSession {
     return LineEditor::Wish::kGoOn;
   }
 
-  void say(Tone tone, std::string_view text) {
-    if (is_leaving_ && tone == Tone::kAnswer) return;
-    const auto* const mark = tone == Tone::kAnswer ? "" : tone == Tone::kEvent ? "* " : "! ";
-    editor_.print(fmt::format("{}{}\n", mark, text));
-  }
-
   const Options& options_;
+  bool is_emulated_;
   Signals signals_;
-  std::unique_ptr<DeviceConsole> console_;
+  DeviceConsole* console_ = nullptr;
   LineEditor editor_{[this](std::string_view line) { return console_->candidates(line); },
                      history_file()};
   std::optional<Pace> pace_;
@@ -271,41 +243,38 @@ class TerminalSession {
   bool is_leaving_ = false;
 };
 
-constexpr std::array kConsoles{
-    ConsoleEntry{"kinovazed", open_kinova_console},
-    ConsoleEntry{"morap", open_morap_console},
-    ConsoleEntry{"parol6", open_parol6_console},
-};
-
-std::vector<std::string> device_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : kConsoles) names.emplace_back(entry.device);
-  return names;
+template <class Session>
+Exit run(Session&& session, const Device& device, const Options& options, const RigOptions& how) {
+  auto console =
+      open_console(device, how, options.target.target,
+                   [&session](Tone tone, std::string_view text) { session.say(tone, text); });
+  return console ? session.run(**console) : report(console.error());
 }
 
-Exit console(const Options& options) {
+Exit console(Devices devices, const Options& options) {
+  const auto device = find_device(devices, options.device);
+  if (!device) return report(device.error());
   const auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
-  const auto& entry = *std::ranges::find(kConsoles, options.device, &ConsoleEntry::device);
+  const bool is_emulated = how->target.is_emulated();
   if (::isatty(STDIN_FILENO) == 1 && has_screen()) {
-    return TerminalSession{options}.run(entry, *how);
+    return run(TerminalSession{options, is_emulated}, **device, options, *how);
   }
   // In virtual time nothing passes while nobody says anything.
-  const auto patience =
-      how->target.is_emulated() ? InputLines::Patience::kWait : InputLines::Patience::kNoWait;
-  return PipeSession{options, patience}.run(entry, *how);
+  const auto patience = is_emulated ? InputLines::Patience::kWait : InputLines::Patience::kNoWait;
+  return run(PipeSession{options, patience}, **device, options, *how);
 }
 
 }  // namespace
 
-void add_console(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("console", kHelp);
+void add_console(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("console", with_example(kHelp, devices));
   const auto options = std::make_shared<Options>();
-  command->add_option("DEVICE", options->device, "what is there")
-      ->required()
-      ->check(CLI::IsMember(device_names()));
+  add_device_argument(*command, options->device, devices);
   add_target_options(*command, options->target);
-  command->callback([options, &action] { action = [options] { return console(*options); }; });
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return console(devices, *options); };
+  });
 }
 
 }  // namespace armjig::cli

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
+#include <CLI/CLI.hpp>
+
+#include "cli/device.hpp"
 #include "harness/capture/message_json.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
@@ -22,11 +24,12 @@ namespace {
 constexpr auto kHelp =
     "Shows what bytes mean, field by field.\n"
     "\n"
-    "  armjig decode parol6 'FF FF FF 34 00 ... 01 02'     hexadecimal digits\n"
-    "  armjig decode parol6 --file session.bin             raw bytes\n"
-    "  armjig decode morap --file captures/morap/bus-nodes-and-pen.jsonl    a recorded I2C bus\n"
-    "  armjig decode morap 24 01 00 00 80 3F               a write to address 12, shifted left\n"
-    "  some-program | armjig decode parol6 --file - --json one JSON object a message\n"
+    "  armjig decode DEVICE 'FF FF FF 34 00 ... 01 02'     hexadecimal digits\n"
+    "  armjig decode DEVICE --file session.bin             raw bytes\n"
+    "  armjig decode DEVICE --file session.jsonl           a recording\n"
+    "  some-program | armjig decode DEVICE --file - --json one JSON object for each message\n"
+    "\n"
+    "What passed on a bus begins with the address, shifted left, as in 24 01 00 00 80 3F.\n"
     "\n"
     "A file may hold raw bytes, hexadecimal digits or a golden-trace/1 recording; which of them "
     "is\n"
@@ -99,10 +102,10 @@ std::string guess_format(const std::string& content) {
 
 /// Without a direction the bytes go through both dissectors, and the one that finds more messages
 /// in them wins.
-Direction guess_direction(const DissectorEntry& entry, Bytes bytes) {
+Direction guess_direction(MakeDissector make_dissector, Bytes bytes) {
   const auto messages_in = [&](Direction direction) {
     std::vector<Message> messages;
-    entry.make()->feed(direction, {}, bytes, messages);
+    make_dissector()->feed(direction, {}, bytes, messages);
     return std::ranges::count_if(messages, [](const Message& m) { return m.fault.empty(); });
   };
   return messages_in(Direction::kToDevice) > messages_in(Direction::kFromDevice)
@@ -110,15 +113,15 @@ Direction guess_direction(const DissectorEntry& entry, Bytes bytes) {
              : Direction::kFromDevice;
 }
 
-Direction direction_of(const Options& options, const DissectorEntry& entry, Bytes bytes) {
+Direction direction_of(const Options& options, MakeDissector make_dissector, Bytes bytes) {
   if (options.direction == "to-device") return Direction::kToDevice;
   if (options.direction == "from-device") return Direction::kFromDevice;
-  return guess_direction(entry, bytes);
+  return guess_direction(make_dissector, bytes);
 }
 
-Outcome<std::vector<Chunk>> read_chunks(const Options& options, const DissectorEntry& entry) {
+Outcome<std::vector<Chunk>> read_chunks(const Options& options, MakeDissector make_dissector) {
   const auto one_chunk = [&](std::vector<std::byte> bytes) {
-    const auto direction = direction_of(options, entry, bytes);
+    const auto direction = direction_of(options, make_dissector, bytes);
     return std::vector{Chunk{direction, {}, std::move(bytes)}};
   };
   if (options.file.empty()) {
@@ -135,13 +138,15 @@ Outcome<std::vector<Chunk>> read_chunks(const Options& options, const DissectorE
   return one_chunk({raw.begin(), raw.end()});
 }
 
-Exit decode(const Options& options) {
+Exit decode(Devices devices, const Options& options) {
   if (options.hex.empty() == options.file.empty()) {
     fmt::print(stderr, "armjig decode: give hexadecimal digits or --file, one of them\n");
     return Exit::kUsage;
   }
-  const auto entry = std::ranges::find(dissectors(), options.device, &DissectorEntry::device);
-  const auto chunks = read_chunks(options, *entry);
+  const auto device = find_device(devices, options.device);
+  if (!device) return report(device.error());
+  const auto make_dissector = (*device)->make_dissector;
+  const auto chunks = read_chunks(options, make_dissector);
   if (!chunks) {
     (void)report(chunks.error());
     return Exit::kUsage;
@@ -150,7 +155,7 @@ Exit decode(const Options& options) {
   std::vector<Message> messages;
   for (const auto& chunk : *chunks) {
     auto& dissector = streams[chunk.stream];
-    if (!dissector) dissector = entry->make();
+    if (!dissector) dissector = make_dissector();
     dissector->feed(chunk.direction, chunk.time, chunk.bytes, messages);
   }
   for (const auto& [stream, dissector] : streams) dissector->finish(messages);
@@ -170,20 +175,12 @@ Exit decode(const Options& options) {
   return all_are_messages ? Exit::kPassed : Exit::kFindings;
 }
 
-std::vector<std::string> device_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : dissectors()) names.emplace_back(entry.device);
-  return names;
-}
-
 }  // namespace
 
-void add_decode(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("decode", kHelp);
+void add_decode(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("decode", with_example(kHelp, devices));
   const auto options = std::make_shared<Options>();
-  command->add_option("DEVICE", options->device, "whose protocol")
-      ->required()
-      ->check(CLI::IsMember(device_names()));
+  add_device_argument(*command, options->device, devices);
   command->add_option("HEX", options->hex, "hexadecimal digits, in any number of words");
   command->add_option("--file", options->file, "read this file, '-' for standard input");
   command->add_option("--format", options->format, "what the file holds")
@@ -193,7 +190,9 @@ void add_decode(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"auto", "to-device", "from-device"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, "one JSON object a message (docs/schemas)");
-  command->callback([options, &action] { action = [options] { return decode(*options); }; });
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return decode(devices, *options); };
+  });
 }
 
 }  // namespace armjig::cli

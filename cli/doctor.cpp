@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "cli/command.hpp"
+#include <CLI/CLI.hpp>
+
+#include "cli/device.hpp"
 #include "harness/rig/doctor.hpp"
 
 namespace armjig::cli {
@@ -45,12 +47,13 @@ void print_json(const std::vector<Finding>& findings) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-Exit doctor(const Options& options) {
+Exit doctor(Devices devices, const Options& options) {
+  const auto boards = known_boards(devices);
   if (options.wants_rules) {
-    fmt::print("{}", udev_rules());
+    fmt::print("{}", udev_rules(boards));
     return Exit::kPassed;
   }
-  const auto findings = examine(this_system());
+  const auto findings = examine(this_system(), boards);
   options.wants_json ? print_json(findings) : print_text(findings);
   const bool is_well = std::ranges::none_of(
       findings, [](const Finding& finding) { return finding.state == Finding::State::kProblem; });
@@ -59,12 +62,14 @@ Exit doctor(const Options& options) {
 
 }  // namespace
 
-void add_doctor(CLI::App& app, Action& action) {
+void add_doctor(CLI::App& app, Devices devices, Action& action) {
   auto* command = app.add_subcommand("doctor", kHelp);
   const auto options = std::make_shared<Options>();
   command->add_flag("--json", options->wants_json, "as one JSON object");
   command->add_flag("--udev-rules", options->wants_rules, "print udev rules for our boards");
-  command->callback([options, &action] { action = [options] { return doctor(*options); }; });
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return doctor(devices, *options); };
+  });
 }
 
 }  // namespace armjig::cli

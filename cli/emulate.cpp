@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,15 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "cli/command.hpp"
+#include "cli/device.hpp"
 #include "cli/device_inputs.hpp"
-#include "cli/emulate_bus.hpp"
 #include "cli/program_judge.hpp"
-#include "conformance/program_check.hpp"
-#include "emulators/host/buses.hpp"
-#include "emulators/host/devices.hpp"
+#include "cli/report_files.hpp"
 #include "emulators/host/host.hpp"
-#include "emulators/host/session_host.hpp"
+#include "emulators/lab/virtual_i2c.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -27,19 +27,16 @@ namespace {
 constexpr auto kHelp =
     "An emulated device for programs that expect a real one, in real time.\n"
     "\n"
-    "  armjig emulate parol6                        on a new pseudo-terminal\n"
-    "  armjig emulate parol6 --link /tmp/parol6     the same, under a name that stays\n"
-    "  armjig emulate parol6 --tcp 4000             as a byte stream on TCP, this machine only\n"
-    "  armjig emulate parol6 --tcp 0 --pty --json   both, any free port, for scripts\n"
-    "  armjig emulate parol6 --set fault=swap-bytes:speed.j1   a faulty one\n"
-    "  armjig emulate morap --set nodes=1,2 --set bus=1        nodes on a virtual /dev/i2c-1\n"
-    "  armjig emulate parol6 --check                tells what the client program does wrong\n"
-    "  armjig emulate kinovazed                     a server on its own TCP port, 51717\n"
-    "  armjig emulate kinovazed --tcp 0 --set objectives=my.json\n"
-    "  armjig emulate kinovazed --check             the same for its clients\n"
+    "  armjig emulate DEVICE                        where a device of its kind is: on a new\n"
+    "                                               pseudo-terminal, its TCP port, an I2C bus\n"
+    "  armjig emulate DEVICE --link /tmp/arm        the same, under a name that stays\n"
+    "  armjig emulate DEVICE --tcp 4000             as a byte stream on TCP, this machine only\n"
+    "  armjig emulate DEVICE --tcp 0 --pty --json   both, any free port, for scripts\n"
+    "  armjig emulate DEVICE --set fault=NAME       a faulty one; 'conformance mutants' has names\n"
+    "  armjig emulate DEVICE --check                tells what the client program does wrong\n"
     "\n"
-    "Lines on standard input do to a board or server what no client can, such as 'estop 0' or\n"
-    "'arm.plugged 0'; 'help' lists them.\n"
+    "Lines on standard input do to the device what no client can, such as 'estop 0'; 'help' lists\n"
+    "them.\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
     "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
@@ -53,22 +50,12 @@ struct Options {
   PtyOptions pty;
   bool wants_tcp = false;
   TcpOptions tcp;
+  int bus = 1;
   double speed = 1;
   bool wants_json = false;
   bool wants_check = false;
   ReportFiles files;
 };
-
-std::string all_devices() {
-  std::string names;
-  for (const auto& entry : hosted_servers()) names += std::string{entry.device} + ", ";
-  for (const auto& entry : hosted_devices()) {
-    names += std::string{entry.device} + ", ";
-  }
-  for (const auto& entry : hosted_buses()) names += std::string{entry.device} + ", ";
-  names.resize(names.size() - 2);
-  return names;
-}
 
 HostOptions host_options(const Options& options) {
   HostOptions host;
@@ -80,13 +67,18 @@ HostOptions host_options(const Options& options) {
   return host;
 }
 
-void announce(const Options& options, const std::vector<std::string>& targets) {
+/// Programs find a virtual bus only in its `environment`.
+void announce(const Options& options, const std::vector<std::string>& targets,
+              const std::vector<std::string>& environment = {}) {
   if (options.wants_json) {
-    const nlohmann::ordered_json line{{"schema", "armjig.emulate/1"},
-                                      {"device", options.device},
-                                      {"listening", targets},
-                                      {"pid", ::getpid()}};
+    nlohmann::ordered_json line{
+        {"schema", "armjig.emulate/1"}, {"device", options.device}, {"listening", targets}};
+    if (!environment.empty()) line["environment"] = environment;
+    line["pid"] = ::getpid();
     fmt::print("{}\n", line.dump());
+  } else if (!environment.empty()) {
+    fmt::print("listening {} for programs that are started with\n  {} PROGRAM\n", targets.front(),
+               fmt::join(environment, " "));
   } else {
     const auto link = options.pty.link.empty() ? targets.size() : std::size_t{1};
     for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -123,13 +115,7 @@ Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) 
 /// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
 constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
 
-Outcome<std::unique_ptr<ProgramCheck>> make_check(const Options& options) {
-  const LinkNoise noise{std::chrono::duration_cast<Duration>(kSchedulingNoise * options.speed)};
-  return make_program_check(options.device, noise);
-}
-
-template <class Check>
-Exit conclude(Check& check, const Options& options) {
+Exit conclude(ProgramCheck& check, const Options& options) {
   const auto result = check.finish();
   fmt::print("{}\n", options.wants_json ? to_json(result) : to_text(result));
   if (const auto written = write_files(result, options.files); !written) {
@@ -138,117 +124,108 @@ Exit conclude(Check& check, const Options& options) {
   return static_cast<Exit>(conclusion_of(result));
 }
 
-/// Until it is stopped. Lines on standard input set `inputs`.
-template <class AnyHost>
-void run(AnyHost& host, std::span<const DeviceInput> inputs) {
+/// Until it is stopped. Lines on standard input do what can be done beside the device.
+Outcome<void> host(AnyHosted hosted, const HostOptions& how, const Options& options) {
+  const bool takes_inputs = has_standard_input();
+  const auto inputs = std::visit([](const auto& device) { return device->inputs(); }, hosted);
+  auto host = Host::open(std::move(hosted), how);
+  if (!host) return tl::unexpected{host.error()};
+  announce(options, host->targets());
   {
     std::optional<DeviceInputs> by_hand;
-    if (!inputs.empty()) {
+    if (takes_inputs && !inputs.empty()) {
       by_hand.emplace(inputs, [&host](auto name, auto value, auto tell) {
-        host.set_input(std::move(name), value, std::move(tell));
+        host->set_input(std::move(name), value, std::move(tell));
       });
     }
-    host.run();
+    host->run();
   }
-  print_statistics(host.statistics());
+  print_statistics(host->statistics());
+  return {};
 }
 
-Exit emulate_server(const ServerEntry& entry, const Options& options,
-                    const DeviceOptions& settings) {
+Outcome<void> serve(std::unique_ptr<HostedStream> hosted, const OnStream& /*kind*/,
+                    const Options& options, ProgramCheck* check) {
+  if (check != nullptr) hosted = check->watch(std::move(hosted));
+  return host(std::move(hosted), host_options(options), options);
+}
+
+Outcome<void> serve(std::unique_ptr<HostedServer> hosted, const OnServer& kind,
+                    const Options& options, ProgramCheck* check) {
   if (options.wants_pty || !options.pty.link.empty()) {
-    return report(
-        Problem{ErrorCode::kBadValue, options.device,
-                "it is a TCP server and has no pseudo-terminal; leave out --pty, --link"});
+    return problem(ErrorCode::kBadValue, options.device,
+                   "it is a TCP server and has no pseudo-terminal; leave out --pty, --link");
   }
-  const bool takes_inputs = has_standard_input();
-  auto server = entry.make(settings, options.device);
-  if (!server) return report(server.error());
-  std::unique_ptr<ProgramCheck> check;
-  if (options.wants_check) {
-    auto made = make_check(options);
-    if (!made) return report(made.error());
-    check = *std::move(made);
-    server = check->watch(*std::move(server));
-  }
-  SessionHostOptions host_options{.tcp = options.tcp, .speed = options.speed};
-  if (!options.wants_tcp) host_options.tcp.port = entry.port;
-  host_options.on_signal = HostOptions::OnSignal::kStop;
-  host_options.log = [](std::string_view line) { fmt::print(stderr, "armjig: {}\n", line); };
-  auto host = SessionHost::open(std::move(*server), host_options);
-  if (!host) return report(host.error());
-  announce(options, {host->target()});
-  run(*host, takes_inputs ? entry.inputs() : std::span<const DeviceInput>{});
-  return check ? conclude(*check, options) : Exit::kPassed;
+  auto how = host_options(options);
+  how.pty.reset();
+  how.tcp = options.tcp;
+  if (!options.wants_tcp) how.tcp->port = kind.tcp_port;
+  if (check != nullptr) hosted = check->watch(std::move(hosted));
+  return host(std::move(hosted), how, options);
 }
 
-Exit emulate_bus(const BusEntry& entry, const Options& options, const DeviceOptions& settings) {
-  const bool has_others =
-      options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1;
-  if (has_others) {
-    return report({ErrorCode::kBadValue, options.device,
-                   "a bus takes --set, --json and --check, and no other option"});
-  }
-  const auto form = options.wants_json ? Announcement::kJson : Announcement::kText;
-  if (!options.wants_check) return emulate_bus(entry, settings, form, {});
-  const auto check = BusCheck::make(options.device);
-  if (!check) return report(check.error());
-  const auto served = emulate_bus(entry, settings, form, (*check)->listener());
-  return served == Exit::kPassed ? conclude(**check, options) : served;
+/// Blocks the signals that end a server, for this thread and those that it starts.
+sigset_t block_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
 }
 
-Exit emulate(const Options& options) {
+Outcome<void> serve(std::unique_ptr<HostedBus> hosted, const OnBus& /*kind*/,
+                    const Options& options, ProgramCheck* check) {
+  if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1) {
+    return problem(ErrorCode::kBadValue, options.device,
+                   "a bus takes --set, --bus, --json and --check, and no other option");
+  }
+  const auto signals = block_signals();
+  const auto i2c = VirtualI2c::open(std::move(hosted), options.bus,
+                                    check == nullptr ? BusListener{} : check->bus_listener());
+  if (!i2c) return tl::unexpected{i2c.error()};
+  announce(options, {"i2c:" + i2c->path()}, i2c->environment());
+  int signal = 0;
+  ::sigwait(&signals, &signal);
+  return {};
+}
+
+Exit emulate(Devices devices, const Options& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
-  if (const auto* bus = find_hosted_bus(options.device)) {
-    return emulate_bus(*bus, options, *settings);
-  }
-  for (const auto& entry : hosted_servers()) {
-    if (entry.device == options.device) return emulate_server(entry, options, *settings);
-  }
-  const bool takes_inputs = has_standard_input();
-  auto device = make_hosted_device(options.device, *settings);
-  if (!device) return report(device.error());
+  const auto found = find_device(devices, options.device);
+  if (!found) return report(found.error());
+  const auto& device = **found;
   std::unique_ptr<ProgramCheck> check;
   if (options.wants_check) {
-    auto made = make_check(options);
+    const LinkNoise noise{std::chrono::duration_cast<Duration>(kSchedulingNoise * options.speed)};
+    auto made = make_program_check(device, noise);
     if (!made) return report(made.error());
     check = *std::move(made);
-    device = check->watch(*std::move(device));
   }
-  auto host = Host::open(std::move(*device), host_options(options));
-  if (!host) return report(host.error());
-  announce(options, host->targets());
-  run(*host,
-      takes_inputs ? hosted_device(options.device).inputs() : std::span<const DeviceInput>{});
+  const auto served = std::visit(
+      [&](const auto& kind) -> Outcome<void> {
+        auto hosted = cli::emulate(kind, *settings, options.device);
+        if (!hosted) return tl::unexpected{hosted.error()};
+        return serve(*std::move(hosted), kind, options, check.get());
+      },
+      device.port);
+  if (!served) return report(served.error());
   return check ? conclude(*check, options) : Exit::kPassed;
 }
 
 void add_check(CLI::App& command, Options& options) {
   auto* check =
       command.add_flag("--check", options.wants_check, "judge the program that talks to it");
-  struct Form {
-    const char* option;
-    std::string* path;
-    const char* what;
-  };
-  for (const auto& [option, path, what] : {Form{"--html", &options.files.html, "a page"},
-                                           Form{"--junit", &options.files.junit, "JUnit XML"},
-                                           Form{"--sarif", &options.files.sarif, "SARIF"}}) {
-    command
-        .add_option(option, *path, fmt::format("also write the report to this file as {}", what))
-        ->type_name("FILE")
-        ->needs(check);
-  }
+  // --json says how to announce, and is the report's form then.
+  for (auto* file : add_report_files(command, options.files, "json")) file->needs(check);
 }
 
 }  // namespace
 
-void add_emulate(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("emulate", kHelp);
+void add_emulate(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("emulate", with_example(kHelp, devices));
   const auto options = std::make_shared<Options>();
-  command->add_option("DEVICE", options->device, "what to emulate: " + all_devices())
-      ->required()
-      ->type_name("");
+  add_device_argument(*command, options->device, devices);
   command->add_flag("--pty", options->wants_pty, "on a pseudo-terminal (the default)");
   command
       ->add_option("--link", options->pty.link,
@@ -268,12 +245,15 @@ void add_emulate(CLI::App& app, Action& action) {
       ->add_option("--set", options->settings,
                    "an option of the device, as in emulated: targets; may be repeated")
       ->type_name("NAME=VALUE");
+  command->add_option("--bus", options->bus, "the N of /dev/i2c-N, 0 to 255 (default: 1)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 255));
   command->add_flag("--json", options->wants_json,
                     "say where it listens as one line of JSON; the report of --check too");
   add_check(*command, *options);
-  command->callback([options, tcp, &action] {
+  command->callback([options, tcp, devices, &action] {
     options->wants_tcp = tcp->count() > 0;
-    action = [options] { return emulate(*options); };
+    action = [options, devices] { return emulate(devices, *options); };
   });
 }
 

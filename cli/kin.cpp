@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -370,7 +371,7 @@ CLI::App* add_computation(CLI::App& kin, const std::string& name, const std::str
 
 }  // namespace
 
-void add_kin(CLI::App& app, Action& action) {
+void add_kin(CLI::App& app, Devices /*devices*/, Action& action) {
   std::string help = kHelp;
   help += "\n\nArms:\n";
   for (const auto& entry : arm::models()) {

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cli/command.hpp"
+#include "cli/device.hpp"
 #include "cli/program_judge.hpp"
 #include "cli/report_files.hpp"
-#include "emulators/host/morap_bus.hpp"
-#include "emulators/host/run_program.hpp"
-#include "emulators/host/virtual_i2c.hpp"
+#include "emulators/lab/run_program.hpp"
+#include "emulators/lab/virtual_i2c.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -58,37 +59,48 @@ Exit conclude(const Report& result, const Options& options, Exit of_program) {
   return of_program == Exit::kPassed ? static_cast<Exit>(conclusion_of(result)) : of_program;
 }
 
-/// Answers a problem of ours, or how the program ended.
-Outcome<Exit> run_on(i2c::Bus bus, const Options& options, BusListener listener) {
-  const auto i2c = VirtualI2c::open(std::move(bus), options.number, std::move(listener));
-  if (!i2c) return tl::unexpected{i2c.error()};
-  return run_program(options.program, i2c->environment()).map([](int code) {
-    return static_cast<Exit>(code);
-  });
+/// The device whose emulated bus can be read from a file.
+Outcome<const Device*> bus_device(Devices devices) {
+  for (const auto& device : devices) {
+    const auto* const bus = std::get_if<OnBus>(&device.port);
+    if (bus != nullptr && std::ranges::count(device.options(), "file", &OptionRow::name) > 0) {
+      return &device;
+    }
+  }
+  return problem(ErrorCode::kUnsupported, "--i2c", "this program has no device on a bus");
 }
 
-Exit exec(const Options& options) {
+Exit exec(Devices devices, const Options& options) {
   if (options.nodes.empty()) {
     return report({ErrorCode::kBadValue, "--i2c is missing", "name a TOML file with the devices"});
   }
   if (options.program.empty()) {
     return report({ErrorCode::kBadValue, "no program", "write it behind --"});
   }
-  auto bus = morap::read_bus(options.nodes);
+  const auto device = bus_device(devices);
+  if (!device) return report(device.error());
+  auto bus = std::get<OnBus>((*device)->port).emulate({{"file", options.nodes}}, "--i2c");
   if (!bus) return report(bus.error());
-  if (!options.wants_check) {
-    const auto ended = run_on(*std::move(bus), options, {});
-    return ended ? *ended : report(ended.error());
+  std::unique_ptr<ProgramCheck> check;
+  if (options.wants_check) {
+    // A program waits for each transaction, and the time of the bus never falls behind the wall
+    // clock meanwhile: no pause is seen shorter than the program made it, so there is no noise.
+    auto made = make_program_check(**device, {});
+    if (!made) return report(made.error());
+    check = *std::move(made);
   }
-  const auto check = BusCheck::make("morap");
-  if (!check) return report(check.error());
-  const auto ended = run_on(*std::move(bus), options, (*check)->listener());
-  return ended ? conclude((*check)->finish(), options, *ended) : report(ended.error());
+  const auto i2c = VirtualI2c::open(*std::move(bus), options.number,
+                                    check ? check->bus_listener() : BusListener{});
+  if (!i2c) return report(i2c.error());
+  const auto code = run_program(options.program, i2c->environment());
+  if (!code) return report(code.error());
+  const auto ended = static_cast<Exit>(*code);
+  return check ? conclude(check->finish(), options, ended) : ended;
 }
 
 }  // namespace
 
-void add_lab(CLI::App& app, Action& action) {
+void add_lab(CLI::App& app, Devices devices, Action& action) {
   auto* lab = app.add_subcommand("lab", kHelp);
   lab->require_subcommand(1);
   auto* command = lab->add_subcommand("exec", "Runs a program that finds emulated devices.");
@@ -101,7 +113,9 @@ void add_lab(CLI::App& app, Action& action) {
   auto* check = command->add_flag("--check", options->wants_check, "judge the program");
   for (auto* file : add_report_files(*command, options->files)) file->needs(check);
   command->add_option("PROGRAM", options->program, "and its arguments, behind --")->type_name("");
-  command->callback([options, &action] { action = [options] { return exec(*options); }; });
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return exec(devices, *options); };
+  });
 }
 
 }  // namespace armjig::cli

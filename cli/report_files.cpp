@@ -7,14 +7,18 @@
 
 namespace armjig::cli {
 
-std::array<CLI::Option*, 4> add_report_files(CLI::App& command, ReportFiles& files) {
-  const auto add = [&command](const char* option, std::string& path, const char* what) {
-    return command
-        .add_option(option, path, fmt::format("also write the report to this file as {}", what))
-        ->type_name("FILE");
-  };
-  return {add("--json", files.json, "JSON"), add("--html", files.html, "a page"),
-          add("--junit", files.junit, "JUnit XML"), add("--sarif", files.sarif, "SARIF")};
+std::vector<CLI::Option*> add_report_files(CLI::App& command, ReportFiles& files,
+                                           std::string_view except) {
+  std::vector<CLI::Option*> added;
+  for (const auto& form : report_forms()) {
+    if (form.name == except) continue;
+    added.push_back(
+        command
+            .add_option(fmt::format("--{}", form.name), files[std::string{form.name}],
+                        fmt::format("also write the report to this file as {}", form.what))
+            ->type_name("FILE"));
+  }
+  return added;
 }
 
 }  // namespace armjig::cli

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <array>
+#include <string_view>
+#include <vector>
 
 #include "harness/report/report.hpp"
 
 namespace armjig::cli {
 
-/// Adds `--json`, `--html`, `--junit` and `--sarif`, each with a file, and answers them.
-std::array<CLI::Option*, 4> add_report_files(CLI::App& command, ReportFiles& files);
+/// Adds an option with a file for each form of a report but `except`, and answers them.
+std::vector<CLI::Option*> add_report_files(CLI::App& command, ReportFiles& files,
+                                           std::string_view except = {});
 
 }  // namespace armjig::cli

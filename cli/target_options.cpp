@@ -3,14 +3,12 @@
 
 #include <fmt/core.h>
 
-#include "emulators/host/devices.hpp"
-
 namespace armjig::cli {
 
 void add_target_options(CLI::App& app, TargetOptions& options) {
   app.add_option("--target", options.target,
                  "where the device is: emulated:[?OPTION=VALUE&...], serial:PATH[,BAUD], "
-                 "usb:VID:PID, pty:PATH or tcp:HOST:PORT")
+                 "usb:VID:PID, pty:PATH, tcp:HOST:PORT, i2c:/dev/i2c-N or i2c-tiny-usb:[SERIAL]")
       ->type_name("TARGET");
   app.add_option("--allow", options.allow,
                  "what may be done to a device that is not emulated: "
@@ -46,15 +44,6 @@ Outcome<RigOptions> parse_target_options(const TargetOptions& options) {
   if (!impairment) return tl::unexpected{impairment.error()};
   rig.impairment = *impairment;
   return rig;
-}
-
-Outcome<Rig> open_rig(std::string_view device, const RigOptions& options) {
-  return Rig::open(device, options, hosted_device(device).open);
-}
-
-Outcome<Rig> open_rig(std::string_view device, const TargetOptions& options) {
-  const auto rig = parse_target_options(options);
-  return rig ? open_rig(device, *rig) : tl::unexpected{rig.error()};
 }
 
 std::string to_arguments(const TargetOptions& options) {

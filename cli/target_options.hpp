@@ -18,8 +18,8 @@ struct TargetOptions {
   std::string wire_log;
 };
 
-/// Adds `--target`, `--allow`, `--impair` and `--wire-log`. None is required here: `open_rig` says
-/// in its own words that the target is missing.
+/// Adds `--target`, `--allow`, `--impair` and `--wire-log`. None is required here:
+/// `parse_target_options` says in its own words that the target is missing.
 void add_target_options(CLI::App& app, TargetOptions& options);
 
 /// Adds `--impair` and `--wire-log` alone.
@@ -27,10 +27,6 @@ void add_link_options(CLI::App& app, TargetOptions& options);
 
 /// Reads the options.
 [[nodiscard]] Outcome<RigOptions> parse_target_options(const TargetOptions& options);
-
-/// Reads the options and opens the target. `device` must be one that `emulated:` can be.
-[[nodiscard]] Outcome<Rig> open_rig(std::string_view device, const RigOptions& options);
-[[nodiscard]] Outcome<Rig> open_rig(std::string_view device, const TargetOptions& options);
 
 /// What a command line needs besides the target to meet it in the same way again, for a report;
 /// begins with a blank unless it is empty. The wire log is left out.

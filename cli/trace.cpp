@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
-#include "emulators/replay/kinovazed_matrix.hpp"
+#include <CLI/CLI.hpp>
+
+#include "cli/device.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 
@@ -19,8 +22,8 @@ constexpr auto kHelp =
     "Replays recordings into fresh emulators in virtual time and compares every byte.\n"
     "\n"
     "  armjig trace verify captures                 all recordings below a folder\n"
-    "  armjig trace verify captures/parol6/jog_max_speed_a.jsonl\n"
-    "  armjig trace verify captures/kinovazed/state-command-matrix.json\n"
+    "  armjig trace verify session.jsonl            one of them\n"
+    "  armjig trace verify matrix.json              a table of states and commands\n"
     "\n"
     "Folders are searched for *.jsonl. For each file 'identical' or the first difference is\n"
     "printed; the last line counts them. A table of states and commands (*.json) is verified cell\n"
@@ -33,10 +36,33 @@ struct Tally {
   int unreadable = 0;
 };
 
-void verify_table(const std::string& path, Tally& tally) {
+/// The device of that name or, for recordings such as those of `morap-node` and `morap-bus`, of
+/// that family; the end of `devices` if there is none.
+auto device_recorded(std::string_view name, Devices devices) {
+  const auto found = std::ranges::find(devices, name, &Device::name);
+  if (found != devices.end()) return found;
+  return std::ranges::find(devices, name.substr(0, name.find('-')), &Device::name);
+}
+
+/// The device of a table; nullptr if none here has tables.
+const Device* device_of_table(const std::string& text, Devices devices) {
+  const auto table = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const auto name = table.is_object() ? table.value("device", nlohmann::json{}) : nlohmann::json{};
+  for (const auto& device : devices) {
+    const bool is_named = !name.is_string() || name.get<std::string>() == device.name;
+    if (is_named && device.replay.verify_table != nullptr) return &device;
+  }
+  return nullptr;
+}
+
+void verify_table(const std::string& path, Devices devices, Tally& tally) {
   std::ifstream file{path, std::ios::binary};
-  const auto verdict =
-      kinovazed::verify_matrix(std::string{std::istreambuf_iterator<char>{file}, {}}, path);
+  const std::string text{std::istreambuf_iterator<char>{file}, {}};
+  const auto* const device = device_of_table(text, devices);
+  const auto verdict = device == nullptr
+                           ? problem(ErrorCode::kUnknownDevice, path,
+                                     "no emulator here is verified by tables of that device")
+                           : device->replay.verify_table(text, path);
   if (!verdict) {
     (void)report(verdict.error());
     ++tally.unreadable;
@@ -50,31 +76,40 @@ void verify_table(const std::string& path, Tally& tally) {
   }
 }
 
-void verify_file(const std::string& path, Tally& tally) {
-  if (path.ends_with(".json")) return verify_table(path, tally);
+void verify_file(const std::string& path, Devices devices, Tally& tally) {
+  if (path.ends_with(".json")) return verify_table(path, devices, tally);
   const auto trace = read_trace(path);
-  const auto difference = trace ? verify(*trace) : tl::unexpected{trace.error()};
+  if (!trace) {
+    fmt::print(stderr, "armjig: {}\n", describe(trace.error()));
+    ++tally.unreadable;
+    return;
+  }
+  const auto device = device_recorded(trace->device, devices);
+  if (device == devices.end()) {
+    fmt::print(stderr, "armjig: {}: no emulator replays '{}' here\n", path, trace->device);
+    return;
+  }
+  const auto difference = verify(*trace, device->replay);
   if (!difference) {
-    const bool is_beyond_us = difference.error().code == ErrorCode::kUnknownDevice;
     fmt::print(stderr, "armjig: {}\n", describe(difference.error()));
-    if (!is_beyond_us) ++tally.unreadable;
+    ++tally.unreadable;
   } else if (!*difference) {
     ++tally.identical;
     fmt::print("{}: identical\n", path);
   } else {
     ++tally.different;
-    fmt::print("{}: different\n{}", path, describe(**difference, *trace));
+    fmt::print("{}: different\n{}", path, describe(**difference, *trace, device->make_dissector));
   }
 }
 
-Exit verify_all(const std::vector<std::string>& paths) {
+Exit verify_all(const std::vector<std::string>& paths, Devices devices) {
   const auto files = find_traces(paths);
   if (!files) {
     (void)report(files.error());
     return Exit::kUsage;
   }
   Tally tally;
-  for (const auto& path : *files) verify_file(path, tally);
+  for (const auto& path : *files) verify_file(path, devices, tally);
   const auto verified = tally.identical + tally.different;
   fmt::print("traces: {} identical: {} different: {}\n", verified, tally.identical,
              tally.different);
@@ -85,13 +120,15 @@ Exit verify_all(const std::vector<std::string>& paths) {
 
 }  // namespace
 
-void add_trace(CLI::App& app, Action& action) {
+void add_trace(CLI::App& app, Devices devices, Action& action) {
   auto* trace = app.add_subcommand("trace", "Recordings of real devices");
   trace->require_subcommand(1);
   auto* verify = trace->add_subcommand("verify", kHelp);
   const auto paths = std::make_shared<std::vector<std::string>>();
   verify->add_option("PATH", *paths, "files or folders")->required();
-  verify->callback([paths, &action] { action = [paths] { return verify_all(*paths); }; });
+  verify->callback([paths, devices, &action] {
+    action = [paths, devices] { return verify_all(*paths, devices); };
+  });
 }
 
 }  // namespace armjig::cli

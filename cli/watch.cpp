@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <array>
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#include "cli/command.hpp"
-#include "cli/morap_watch.hpp"
+#include "cli/device.hpp"
 #include "cli/pace.hpp"
-#include "cli/parol6_view.hpp"
 #include "cli/screen.hpp"
 #include "cli/signals.hpp"
 #include "cli/target_options.hpp"
-#include "cli/watched.hpp"
-#include "harness/timing/latency_histogram.hpp"
-#include "harness/timing/schedule.hpp"
+#include "harness/console/watch.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -31,11 +24,9 @@ using namespace std::chrono_literals;
 constexpr auto kHelp =
     "Shows what a device says of itself, live. Ctrl-C or q ends it.\n"
     "\n"
-    "  armjig watch parol6 --target pty:/tmp/parol6\n"
-    "  armjig watch parol6 --target emulated: --seconds 10      in virtual time, at once\n"
-    "  armjig watch morap --target i2c:/dev/i2c-1               all nodes that answer\n"
-    "  armjig watch kinovazed --target tcp:127.0.0.1:51717\n"
-    "  armjig watch parol6 --target pty:/tmp/parol6 --json | jq .joints[0].position_deg\n"
+    "  armjig watch DEVICE --target pty:/tmp/arm\n"
+    "  armjig watch DEVICE --target emulated: --seconds 10      in virtual time, at once\n"
+    "  armjig watch DEVICE --target tcp:127.0.0.1:51717 --json  for scripts\n"
     "\n"
     "It only asks. But a PAROL6 answers nothing else than commands: watch sends idle frames, and\n"
     "every frame also says what outputs and gripper shall do. So outputs go off, a gripper goes\n"
@@ -61,137 +52,81 @@ struct Options {
 
 enum class Form : std::uint8_t { kScreen, kLines, kJson };
 
-/// From the first request to the last answer.
-class Watch {
+/// Somebody, or a file, that looks on until the end.
+class Viewer {
  public:
-  Watch(StreamPort& port, std::unique_ptr<Watched> watched, Duration period, const Options& options,
-        Form form, Pace::By by)
-      : port_{port},
-        watched_{std::move(watched)},
-        options_{options},
-        form_{form},
-        start_{port.now()},
-        schedule_{start_, period},
-        pace_{by, start_} {
+  Viewer(Watched& watched, Watch& watch, const Options& options, Form form, Pace::By by)
+      : watched_{watched}, watch_{watch}, options_{options}, form_{form}, pace_{by, watched.now()} {
     if (form_ == Form::kScreen) screen_.emplace();
   }
 
   /// Errors are the port's.
   Result<void> run() {
-    auto result = run_cycles();
-    if (result) result = receive_until(schedule_.next());
-    watched_->finish();
+    const auto heard = [this] {
+      if (form_ == Form::kJson) print_json();
+    };
+    Result<void> result;
+    while (result && !is_over()) {
+      if (const auto wait = pace_.until(watch_.next()); wait > 0ns) {
+        std::this_thread::sleep_for(wait);
+      }
+      result = watch_.cycle(heard);
+      if (result) show();
+    }
+    if (result) result = watch_.end(heard);
     screen_.reset();
     return result;
   }
 
-  [[nodiscard]] bool has_heard_something() const { return watched_->answers() > 0; }
-
   /// The last words.
   [[nodiscard]] std::string summary() const {
-    const auto state = form_ == Form::kScreen ? watched_->panel() : std::string{};
-    return state + watched_->link() + schedule_text();
+    const auto state = form_ == Form::kScreen ? watched_.panel() : std::string{};
+    return state + watch_.summary();
   }
 
  private:
-  Result<void> run_cycles() {
-    while (!is_over()) {
-      if (const auto wait = pace_.until(schedule_.next()); wait > 0ns) {
-        std::this_thread::sleep_for(wait);
-      }
-      if (auto received = receive_until(schedule_.next()); !received) return received;
-      const auto cycle = schedule_.begin(port_.now());
-      skipped_ += cycle.skipped;
-      lateness_.record(cycle.lateness);
-      if (auto asked = ask(); !asked) return asked;
-      show();
-    }
-    return {};
-  }
-
-  Result<void> ask() {
-    const auto request = watched_->request(port_.now());
-    if (request.empty()) return {};
-    ++sent_;
-    return port_.write(request);
-  }
-
-  /// Questions, or what came without any.
-  [[nodiscard]] std::uint64_t count() const { return sent_ > 0 ? sent_ : watched_->answers(); }
-
   [[nodiscard]] bool is_over() {
-    if (signals_.must_end() || signals_.take_interrupt()) return true;
-    if (screen_ && screen_->wants_to_quit()) return true;
-    if (options_.count && count() >= *options_.count) return true;
-    return options_.seconds &&
-           schedule_.next() - start_ >= std::chrono::duration<double>{*options_.seconds};
-  }
-
-  Result<void> receive_until(Instant time) {
-    std::array<std::byte, 4096> buffer;
-    for (;;) {
-      const auto size = port_.read(buffer, time);
-      if (!size) return tl::unexpected{size.error()};
-      watched_->receive(port_.now(), std::span{buffer}.first(*size));
-      if (form_ == Form::kJson) print_json();
-      // A device that never stops sending must not keep us from our deadline.
-      if (*size == 0 || port_.now() >= time) return {};
-    }
+    return signals_.must_end() || signals_.take_interrupt() ||
+           (screen_ && screen_->wants_to_quit()) || watch_.is_over();
   }
 
   void print_json() const {
-    const auto lines = watched_->json_lines();
+    const auto lines = watched_.json_lines();
     for (const auto& line : lines) fmt::print("{}\n", line);
     if (!lines.empty()) std::fflush(stdout);
   }
 
   void show() {
-    if (form_ == Form::kLines) show_line();
+    if (form_ == Form::kLines) show_lines();
     if (form_ == Form::kScreen) show_screen();
   }
 
-  /// The first line as soon as there is something to say, then one a second.
-  void show_line() {
-    const bool is_due = watched_->answers() > 0 && port_.now() >= next_line_;
-    if (!is_due) return;
-    fmt::print("{:.2f} s  {}\n", seconds_since_start(), watched_->line());
+  /// The first lines as soon as there is something to say, then once a second.
+  void show_lines() {
+    if (watched_.answers() == 0 || watched_.now() < next_lines_) return;
+    for (const auto& line : watched_.lines()) {
+      fmt::print("{:.2f} s  {}\n", watch_.seconds_since_start(), line);
+    }
     std::fflush(stdout);
-    next_line_ = port_.now() + 1s;
+    next_lines_ = watched_.now() + 1s;
   }
 
   void show_screen() {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_drawn_ < 100ms) return;
     last_drawn_ = now;
-    const auto state = watched_->panel();
-    screen_->draw(fmt::format("{} at {}, {:.1f} s\n\n{}\n{}{}\nCtrl-C or q ends\n", options_.device,
-                              options_.target.target, seconds_since_start(),
-                              state.empty() ? "no telemetry yet\n" : state, watched_->link(),
-                              schedule_text()));
+    const auto title = fmt::format("{} at {}", options_.device, options_.target.target);
+    screen_->draw(watch_.page(title) + "\nCtrl-C or q ends\n");
   }
 
-  [[nodiscard]] std::string schedule_text() const {
-    return fmt::format("schedule   {} skipped, late by {} at 50 %, 99 % and most\n", skipped_,
-                       percentiles(lateness_));
-  }
-
-  [[nodiscard]] double seconds_since_start() const {
-    return std::chrono::duration<double>{port_.now() - start_}.count();
-  }
-
-  StreamPort& port_;
-  std::unique_ptr<Watched> watched_;
+  Watched& watched_;
+  Watch& watch_;
   const Options& options_;
   Form form_;
-  Instant start_;
-  PeriodicSchedule schedule_;
   Pace pace_;
   Signals signals_;
   std::optional<Screen> screen_;
-  std::uint64_t sent_ = 0;
-  std::uint64_t skipped_ = 0;
-  LatencyHistogram lateness_;
-  Instant next_line_{};
+  Instant next_lines_{};
   std::chrono::steady_clock::time_point last_drawn_{};
 };
 
@@ -200,34 +135,20 @@ Form form_of(const Options& options) {
   return has_screen() ? Form::kScreen : Form::kLines;
 }
 
-const WatchedEntry& entry_of(const std::string& device) {
-  return *std::ranges::find(watched_devices(), device, &WatchedEntry::device);
+Duration duration_of(double seconds) {
+  return std::chrono::round<Duration>(std::chrono::duration<double>{seconds});
 }
 
-/// A round of questions to every node on the bus.
-Exit watch_bus(const Options& options) {
-  MorapWatch watch{.target = options.target};
-  if (options.reconnects) {
-    return report({ErrorCode::kUnsupported, "--reconnect", "of a bus it is not there yet"});
-  }
-  watch.rate = options.rate.value_or(watch.rate);
-  watch.count = options.count;
-  if (options.seconds) {
-    watch.count = static_cast<std::uint64_t>(std::max(1.0, *options.seconds * watch.rate));
-  }
-  const bool never_ends = !watch.count && !has_screen();
-  if (never_ends && options.target.target.starts_with("emulated:")) {
-    return report({ErrorCode::kBadValue, options.target.target + " in virtual time never ends",
-                   "say --seconds or --count"});
-  }
-  watch.form = options.json   ? MorapWatch::Form::kJson
-               : has_screen() ? MorapWatch::Form::kScreen
-                              : MorapWatch::Form::kLines;
-  return watch_morap(watch);
+Watch::Plan plan_of(const Options& options, Duration period) {
+  Watch::Plan plan{.period = period, .count = options.count};
+  if (options.seconds) plan.time = duration_of(*options.seconds);
+  return plan;
 }
 
-Exit watch(const Options& options) {
-  if (options.device == "morap") return watch_bus(options);
+Exit watch(Devices devices, const Options& options) {
+  const auto found = find_device(devices, options.device);
+  if (!found) return report(found.error());
+  const auto& device = **found;
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
   if (options.reconnects) how->when_gone = WhenGone::kReopen;
@@ -236,43 +157,36 @@ Exit watch(const Options& options) {
     return report({ErrorCode::kBadValue, options.target.target + " in virtual time never ends",
                    "say --seconds or --count"});
   }
-  const auto& entry = entry_of(options.device);
-  auto rig = entry.open(*how);
-  if (!rig) return report(rig.error());
-  const auto period = std::chrono::round<Duration>(
-      std::chrono::duration<double>{1.0 / options.rate.value_or(entry.rate)});
+  const auto rate = options.rate.value_or(device.watch_rate);
+  const auto period = duration_of(1 / rate);
+  auto watched = open_watched(device, *how, period);
+  if (!watched) return report(watched.error());
+  Watch watch{**watched, plan_of(options, period)};
   const bool needs_pace = how->target.is_emulated() && is_watched_live;
-  Watch watch{rig->port(), entry.make(period), period,
-              options,     form_of(options),   needs_pace ? Pace::By::kWallClock : Pace::By::kPort};
-  const auto result = watch.run();
+  Viewer viewer{**watched, watch, options, form_of(options),
+                needs_pace ? Pace::By::kWallClock : Pace::By::kPort};
+  const auto result = viewer.run();
   auto* const out = options.json ? stderr : stdout;
-  fmt::print(out, "{}", watch.summary());
-  if (const auto done = rig->impairments()) fmt::print(out, "impaired   {}\n", to_string(*done));
+  fmt::print(out, "{}", viewer.summary());
+  if (const auto done = (*watched)->impairments()) {
+    fmt::print(out, "impaired   {}\n", to_string(*done));
+  }
   if (!result) {
     return report(
         {result.error().code, options.target.target, "is it still there and switched on?"});
   }
-  if (watch.has_heard_something()) return Exit::kPassed;
+  if ((*watched)->answers() > 0) return Exit::kPassed;
   return report({ErrorCode::kTimedOut, options.target.target,
                  fmt::format("no telemetry came: is a {} there, switched on, and free for us?",
                              options.device)});
 }
 
-std::vector<std::string> device_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : watched_devices()) names.emplace_back(entry.device);
-  names.emplace_back("morap");
-  return names;
-}
-
 }  // namespace
 
-void add_watch(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("watch", kHelp);
+void add_watch(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("watch", with_example(kHelp, devices));
   const auto options = std::make_shared<Options>();
-  command->add_option("DEVICE", options->device, "what is there")
-      ->required()
-      ->check(CLI::IsMember(device_names()));
+  add_device_argument(*command, options->device, devices);
   add_target_options(*command, options->target);
   command->add_option("--rate", options->rate, "questions a second, 1 to 1000 (default: as usual)")
       ->type_name("HZ")
@@ -286,7 +200,9 @@ void add_watch(CLI::App& app, Action& action) {
       ->excludes(count);
   command->add_flag("--reconnect", options->reconnects, "wait for a device that has gone");
   command->add_flag("--json", options->json, "a JSON object for each message (armjig.telemetry/1)");
-  command->callback([options, &action] { action = [options] { return watch(*options); }; });
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return watch(devices, *options); };
+  });
 }
 
 }  // namespace armjig::cli

@@ -20,33 +20,55 @@ if(ARMJIG_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${ARMJIG_CCACHE})
 endif()
 
-# armjig_library(NAME SOURCES folder... [EXACT_FLOATS]
+# armjig_library(NAME SOURCES folder... [ONLY name... | EXCEPT name...] [EMBEDDABLE] [EXACT_FLOATS]
 #                [PUBLIC target...] [PRIVATE target...] [HEADERS_OF target...])
 #
-# The library armjig_NAME, exported as armjig::NAME, of all sources and headers in those folders.
+# The library armjig_NAME, exported as armjig::NAME, of all sources and headers in those folders, or
+# of those among them that are called so (without .cpp and .hpp), or not called so. EMBEDDABLE puts
+# it into the package that needs neither Boost nor an operating system (component embedded), else it
+# is in the whole (component dev).
 # Headers are included from the root of the tree. EXACT_FLOATS forbids fused multiply-add, which the
 # recordings of real devices do not have. HEADERS_OF names header-only libraries that our headers do
 # not show: whoever links to us later does not need them.
 function(armjig_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "EXACT_FLOATS" "" "SOURCES;PUBLIC;PRIVATE;HEADERS_OF")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "EMBEDDABLE;EXACT_FLOATS" ""
+                        "SOURCES;ONLY;EXCEPT;PUBLIC;PRIVATE;HEADERS_OF")
   list(TRANSFORM arg_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/)
   list(TRANSFORM arg_SOURCES APPEND /*.cpp OUTPUT_VARIABLE sources)
   list(TRANSFORM arg_SOURCES APPEND /*.hpp OUTPUT_VARIABLE headers)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${sources})
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${headers})
+  if(arg_ONLY OR arg_EXCEPT)
+    list(JOIN arg_ONLY "|" only)
+    list(JOIN arg_EXCEPT "|" except)
+    if(arg_ONLY)
+      list(FILTER sources INCLUDE REGEX "/(${only})\\.cpp$")
+      list(FILTER headers INCLUDE REGEX "/(${only})\\.hpp$")
+    else()
+      list(FILTER sources EXCLUDE REGEX "/(${except})\\.cpp$")
+      list(FILTER headers EXCLUDE REGEX "/(${except})\\.hpp$")
+    endif()
+  endif()
   list(TRANSFORM arg_HEADERS_OF REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
   add_library(armjig_${name} STATIC ${sources})
   add_library(armjig::${name} ALIAS armjig_${name})
   set_target_properties(armjig_${name} PROPERTIES EXPORT_NAME ${name})
   target_sources(armjig_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
                  FILES ${headers})
+  set_property(GLOBAL APPEND PROPERTY ARMJIG_LIBRARIES armjig_${name})
   target_compile_features(armjig_${name} PUBLIC cxx_std_20)
   target_link_libraries(armjig_${name} PUBLIC ${arg_PUBLIC}
                         PRIVATE ${arg_PRIVATE} ${arg_HEADERS_OF} $<BUILD_INTERFACE:armjig_flags>)
   if(arg_EXACT_FLOATS)
     target_compile_options(armjig_${name} PRIVATE -ffp-contract=off)
   endif()
-  install(TARGETS armjig_${name} EXPORT armjigTargets
-          ARCHIVE COMPONENT dev
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/armjig COMPONENT dev)
+  set(component dev)
+  set(targets armjigTargets)
+  if(arg_EMBEDDABLE)
+    set(component embedded)
+    set(targets armjigEmbeddedTargets)
+  endif()
+  install(TARGETS armjig_${name} EXPORT ${targets}
+          ARCHIVE COMPONENT ${component}
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/armjig COMPONENT ${component})
 endfunction()

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where, and the Debian packages: armjig (component runtime) and
-# libarmjig-dev (component dev). The libraries and their headers: armjig_library().
+# What `cmake --install` puts where, and the Debian packages: armjig (component runtime),
+# libarmjig-embedded-dev (component embedded) and libarmjig-dev (component dev), which needs it. The
+# libraries and their headers: armjig_library().
 include(CMakePackageConfigHelpers)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/armjig)
 write_basic_package_version_file(armjigConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(EXPORT armjigTargets NAMESPACE armjig:: DESTINATION ${config_dir} COMPONENT dev)
+install(EXPORT armjigEmbeddedTargets NAMESPACE armjig:: DESTINATION ${config_dir}
+        COMPONENT embedded)
 install(FILES cmake/armjigConfig.cmake ${PROJECT_BINARY_DIR}/armjigConfigVersion.cmake
-        DESTINATION ${config_dir} COMPONENT dev)
+        DESTINATION ${config_dir} COMPONENT embedded)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT docs)
 
 # The papers of a Debian package, left out of a plain installation.
@@ -21,10 +23,12 @@ function(install_papers component package)
           COMPONENT ${component} EXCLUDE_FROM_ALL)
 endfunction()
 
-set(CPACK_COMPONENTS_ALL dev)
-install_papers(dev libarmjig-dev)
+set(CPACK_COMPONENTS_ALL embedded)
+install_papers(embedded libarmjig-embedded-dev)
 if(ARMJIG_BUILD_CLI)
-  list(APPEND CPACK_COMPONENTS_ALL runtime)
+  install(EXPORT armjigTargets NAMESPACE armjig:: DESTINATION ${config_dir} COMPONENT dev)
+  list(APPEND CPACK_COMPONENTS_ALL dev runtime)
+  install_papers(dev libarmjig-dev)
   install_papers(runtime armjig)
   add_custom_command(OUTPUT armjig.bash COMMAND armjig completion bash > armjig.bash VERBATIM)
   add_custom_command(OUTPUT 60-armjig.rules COMMAND armjig doctor --udev-rules > 60-armjig.rules
@@ -58,7 +62,14 @@ set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "Emulates robot-arm controllers to the byte
 against the rules of their protocols, and replays recordings of real devices.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libarmjig-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libexpected-dev, libfmt-dev, libserialport-dev")
-set(CPACK_DEBIAN_DEV_DESCRIPTION "Static libraries, headers and the CMake package: codecs and
-emulated devices without any I/O, and what the armjig program is made of.")
+string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+       "libarmjig-embedded-dev (= ${PROJECT_VERSION})" libedit-dev libserialport-dev
+       libtomlplusplus-dev libumockdev-dev liburdfdom-dev libusb-1.0-0-dev)
+set(CPACK_DEBIAN_DEV_DESCRIPTION "Static libraries and headers of all that the armjig program is
+made of, for programs that put devices of their own on the jig.")
+set(CPACK_DEBIAN_EMBEDDED_PACKAGE_NAME libarmjig-embedded-dev)
+set(CPACK_DEBIAN_EMBEDDED_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_EMBEDDED_PACKAGE_DEPENDS "libexpected-dev, libfmt-dev")
+set(CPACK_DEBIAN_EMBEDDED_DESCRIPTION "Static libraries, headers and the CMake package of what
+needs no operating system: codecs, dissectors, kinematics and emulated devices.")
 include(CPack)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/bench.hpp"
 
+#include <fmt/core.h>
+
 #include <utility>
 
 namespace armjig {
@@ -9,6 +11,7 @@ void Bench::begin(Profile profile, std::uint64_t seed) {
   profile_ = profile;
   judgement_ = {};
   is_over_ = false;
+  about_.clear();
   random_.seed(static_cast<std::uint32_t>(seed ^ (seed >> 32U)));
   forget_exchange();
 }
@@ -25,6 +28,14 @@ void Bench::skip(std::string reason) { decide({Verdict::kSkipped, {}, std::move(
 
 void Bench::leave_open(std::string reason) {
   decide({Verdict::kInconclusive, {}, std::move(reason)});
+}
+
+void Bench::expect_true(bool is_so, std::string_view wanted, std::string_view otherwise) {
+  if (!is_so) fail(behind(wanted), std::string{otherwise});
+}
+
+std::string Bench::behind(std::string_view text) const {
+  return about_.empty() ? std::string{text} : fmt::format("{} ({})", text, about_);
 }
 
 void Bench::decide(Judgement judgement) {

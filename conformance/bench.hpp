@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <random>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "conformance/requirement.hpp"
+#include "conformance/wording.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
 
@@ -44,12 +48,12 @@ class Bench {
   /// Learns how much later than needed answers come here. Called once, before the first case.
   virtual void measure_noise() = 0;
   /// The most that was seen then; in virtual time what the device itself takes.
-  [[nodiscard]] virtual Duration noise() const = 0;
+  [[nodiscard]] Duration noise() const noexcept { return noise_; }
 
   /// The link's own clock, virtual or real.
   [[nodiscard]] virtual Instant now() const = 0;
   /// Why the link is gone; none as long as it is there.
-  [[nodiscard]] virtual const std::optional<Error>& error() const = 0;
+  [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
   /// The last few messages both ways, oldest first, decoded; none from before `begin`.
   [[nodiscard]] virtual std::string last_exchange() const = 0;
 
@@ -68,14 +72,29 @@ class Bench {
   void skip(std::string reason);
   void leave_open(std::string reason);  ///< inconclusive
 
+  /// What comes next is about this: it stands behind every expectation until it is said anew.
+  void about(std::string what) { about_ = std::move(what); }
+  void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
+
  protected:
   virtual void forget_exchange() = 0;
+
+  /// Nothing passes on the link any more, and no time goes by.
+  [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over_; }
+  /// An expectation, with what it is about.
+  [[nodiscard]] std::string behind(std::string_view text) const;
+  [[nodiscard]] const std::string& subject() const noexcept { return about_; }
+  void lose_link(const Error& error) { error_ = error; }
+  void hear_noise(Duration noise) { noise_ = std::max(noise_, noise); }
 
  private:
   void decide(Judgement judgement);
 
   Profile profile_{};
   Judgement judgement_;
+  std::string about_;
+  std::optional<Error> error_;
+  Duration noise_{};
   bool is_over_ = false;
   std::mt19937 random_;
 };

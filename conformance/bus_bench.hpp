@@ -2,27 +2,23 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "conformance/bench.hpp"
+#include "conformance/port_bench.hpp"
 #include "harness/core/bytes.hpp"
 #include "harness/link/bus_port.hpp"
-#include "harness/rig/bus_rig.hpp"
-#include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
 /// A conversation with devices on an I2C bus. The same calls mean the same in virtual and in real
 /// time. Once a case is decided, or the port has failed, nothing passes and no time goes by.
-class BusBench : public Bench {
+class BusBench : public DissectedBench<BusPort> {
  public:
-  BusBench(BusRig rig, const DissectorEntry& device);
+  BusBench(Rig<BusPort> rig, std::unique_ptr<Dissector> dissector);
 
   enum class End : std::uint8_t {
     kStop,
@@ -50,24 +46,15 @@ class BusBench : public Bench {
   void pause(Duration duration);
   void pause_until(Instant time);
 
-  /// Does at the device what its link cannot: an input, the power. Skips the case where nobody can.
-  void touch(std::string_view input, std::int64_t value);
-
-  [[nodiscard]] Instant now() const override { return rig_.port().now(); }
-  [[nodiscard]] const std::optional<Error>& error() const override { return error_; }
-  [[nodiscard]] std::string last_exchange() const override;
-
- protected:
-  void forget_exchange() override { exchange_.clear(); }
-  [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over(); }
-
  private:
   /// The value, or nothing once the port has failed.
   template <class T>
-  std::optional<T> taken(Result<T> result);
+  std::optional<T> taken(Result<T> result) {
+    return is_done(result) ? std::optional{*result} : std::nullopt;
+  }
   bool connect(BusAddress address, BusPort::Access access);
   void finish(End end);
-  [[nodiscard]] bool is_whole_only() const { return !rig_.port().has_operations(); }
+  [[nodiscard]] bool is_whole_only() const { return !port().has_operations(); }
   /// Does what was left open, and `last` behind it.
   [[nodiscard]] std::optional<Transfer> transfer(const BusMessage& last);
   Written write_whole(BusAddress address, Bytes bytes, End end);
@@ -80,11 +67,7 @@ class BusBench : public Bench {
     std::vector<std::byte> bytes;
   };
 
-  mutable BusRig rig_;  // its port tells the time without changing
   std::vector<Open> open_;
-  std::unique_ptr<Dissector> dissector_;
-  std::deque<Message> exchange_;
-  std::optional<Error> error_;
 };
 
 template <class Between>
@@ -97,9 +80,9 @@ std::vector<std::byte> BusBench::read_around(BusAddress address, std::size_t siz
     return bytes;
   }
   if (!connect(address, BusPort::Access::kRead)) return bytes;
-  for (std::size_t i = 0; i < size && !error_; ++i) {
+  for (std::size_t i = 0; i < size && !error(); ++i) {
     if (i == 1) between();
-    const auto byte = taken(rig_.port().read(i + 1 < size ? Ack::kAck : Ack::kNack));
+    const auto byte = taken(port().read(i + 1 < size ? Ack::kAck : Ack::kNack));
     bytes[i] = byte.value_or(std::byte{});
   }
   finish(End::kStop);

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <map>
 #include <optional>
@@ -12,10 +11,6 @@
 #include <thread>
 #include <utility>
 
-#include "conformance/demo/mutants.hpp"
-#include "conformance/kinovazed/mutants.hpp"
-#include "conformance/morap/mutants.hpp"
-#include "conformance/parol6/mutants.hpp"
 #include "conformance/selection.hpp"
 #include "harness/core/version.hpp"
 #include "harness/rig/target.hpp"
@@ -110,8 +105,9 @@ bool is_hinted(const Case& one, std::span<const SectionHints> hints, std::string
 
 class Mutation {
  public:
-  Mutation(const Suite& suite, const MutantsEntry& entry, const MutationOptions& options)
-      : suite_{suite}, entry_{entry}, options_{options} {}
+  Mutation(const Suite& suite, const MutantsEntry& entry, const OpenBench& open,
+           const MutationOptions& options)
+      : suite_{suite}, entry_{entry}, open_{open}, options_{options} {}
 
   Outcome<MutationResult> run() {
     if (auto tried = try_sound(); !tried) return tl::unexpected{tried.error()};
@@ -145,7 +141,7 @@ class Mutation {
   }
 
   [[nodiscard]] Outcome<Trial> open(std::string_view fault, Profile profile) const {
-    auto bench = suite_.open(target_with(fault, profile));
+    auto bench = open_(target_with(fault, profile));
     if (!bench) return tl::unexpected{bench.error()};
     return Trial{*std::move(bench), profile};
   }
@@ -275,6 +271,7 @@ class Mutation {
 
   const Suite& suite_;
   const MutantsEntry& entry_;
+  const OpenBench& open_;
   const MutationOptions& options_;
   Cases cases_;
   MutationResult result_;
@@ -327,12 +324,6 @@ ReportSection rates_of(const MutationResult& result) {
 
 }  // namespace
 
-std::span<const MutantsEntry> mutants() noexcept {
-  static const std::array kMutants{demo::mutants_entry(), kinovazed::mutants_entry(),
-                                   morap::mutants_entry(), parol6::mutants_entry()};
-  return kMutants;
-}
-
 std::vector<Mutant> mutants_of(const MutantsEntry& entry, Profile profile) {
   std::vector<Mutant> all;
   for (auto& fault : entry.faults()) {
@@ -347,8 +338,8 @@ std::vector<Mutant> mutants_of(const MutantsEntry& entry, Profile profile) {
 }
 
 Outcome<MutationResult> run_mutants(const Suite& suite, const MutantsEntry& entry,
-                                    const MutationOptions& options) {
-  return Mutation{suite, entry, options}.run();
+                                    const OpenBench& open, const MutationOptions& options) {
+  return Mutation{suite, entry, open, options}.run();
 }
 
 Report to_report(const MutationResult& result, const Suite& suite, const MutationOptions& options) {

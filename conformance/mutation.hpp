@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "emulators/faults/named_fault.hpp"
 #include "harness/core/error.hpp"
 #include "harness/report/report.hpp"
+#include "harness/rig/rig.hpp"
 
 namespace armjig {
 
@@ -45,9 +47,6 @@ struct MutantsEntry {
   std::span<const SectionHints> hints;  ///< for the speed alone
 };
 
-/// Devices that have mutants.
-[[nodiscard]] std::span<const MutantsEntry> mutants() noexcept;
-
 /// One for each fault, in the order of the device's list.
 [[nodiscard]] std::vector<Mutant> mutants_of(const MutantsEntry& entry, Profile profile);
 
@@ -57,6 +56,9 @@ struct MutantFate {
   std::string killer{};  ///< the case that found it; empty: it survived
   std::string finding{};
 };
+
+/// Opens a target of a suite.
+using OpenBench = std::function<Outcome<std::unique_ptr<Bench>>(const RigOptions& how)>;
 
 struct MutationOptions {
   Profile profile = Profile::kFirmware;
@@ -76,8 +78,10 @@ struct MutationResult {
 /// Runs cases on each mutant until one finds it: those that the section hints at first, then what
 /// found the mutants of the section before, and at last in the order of a run. A survivor under the
 /// document is excused if it breaks only what shipped devices are held to. The same result for the
-/// same suite, whatever the number of threads. Problems: those of `Suite::open`.
+/// same suite, whatever the number of threads. Problems: those of `open`, which makes a bench of
+/// its own on an emulated target and is called from several threads.
 [[nodiscard]] Outcome<MutationResult> run_mutants(const Suite& suite, const MutantsEntry& entry,
+                                                  const OpenBench& open,
                                                   const MutationOptions& options);
 
 /// A row for each mutant, and for each must-requirement without one; kill rates by section.

@@ -3,12 +3,12 @@
 
 #include <fmt/core.h>
 
-#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
-#include "conformance/kinovazed/host/checker.hpp"
-#include "conformance/morap/host/checker.hpp"
-#include "conformance/parol6/host/checker.hpp"
 #include "harness/core/version.hpp"
 
 namespace armjig {
@@ -16,136 +16,128 @@ namespace {
 
 constexpr std::size_t kRemembered = 3;
 
-constexpr std::array kChecks{
-    ProgramCheckEntry{"kinovazed", kinovazed::host_requirements, kinovazed::make_host_checker},
-    ProgramCheckEntry{"morap", morap::host_requirements, morap::make_host_checker},
-    ProgramCheckEntry{"parol6", parol6::host_requirements, parol6::make_host_checker},
-};
-
 double seconds(Instant time) {
   return std::chrono::duration<double>{time.time_since_epoch()}.count();
 }
 
+using Kind = ConnectionEvent::Kind;
+
+// What a device sent, as its checker is shown it.
+void show(ProgramChecker& checker, const SentBytes& sent) {
+  checker.from_device(sent.time, sent.bytes);
+}
+void show(ProgramChecker& checker, const ServerEvent& sent) {
+  const bool is_data = sent.kind == SessionEvent::Kind::kData;
+  checker.on_connection(
+      {sent.time, sent.connection, is_data ? Kind::kFromServer : Kind::kDropped, sent.bytes});
+}
+
 }  // namespace
 
-std::span<const ProgramCheckEntry> program_checks() noexcept { return kChecks; }
+/// The one way by which the checker is shown anything.
+template <class Show>
+void ProgramCheck::hear(Show show) {
+  const std::lock_guard lock{guard_};
+  show(*checker_);
+  take_offences();
+}
 
-/// Shows the checker what passes, in the order of time.
-class ProgramCheck::Overheard final : public HostedStream {
+/// A device whose traffic is shown to the checker, in the order of time.
+template <class Hosted>
+class ProgramCheck::Overheard : public Hosted {
  public:
-  Overheard(ProgramCheck& check, std::unique_ptr<HostedStream> device)
+  Overheard(ProgramCheck& check, std::unique_ptr<Hosted> device)
       : check_{check}, device_{std::move(device)} {}
 
-  void receive(Instant time, Bytes bytes) override {
-    check_.now_ = time;
-    check_.checker_->to_device(time, bytes);
-    device_->receive(time, bytes);
-    overhear_sent();
-  }
   void advance_to(Instant time) override {
-    check_.now_ = time;
-    device_->advance_to(time);
-    overhear_sent();
+    pass(time, [](ProgramChecker&) {}, [&] { device_->advance_to(time); });
   }
   [[nodiscard]] std::optional<Instant> next_event() const override { return device_->next_event(); }
-  [[nodiscard]] std::span<const SentBytes> sent() const override { return device_->sent(); }
+  [[nodiscard]] auto sent() const -> decltype(std::declval<const Hosted&>().sent()) override {
+    return device_->sent();
+  }
   void clear_sent() override {
     device_->clear_sent();
     heard_ = 0;
   }
+  [[nodiscard]] std::span<const DeviceInput> inputs() const override { return device_->inputs(); }
+  [[nodiscard]] std::vector<std::string> take_log() override { return device_->take_log(); }
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
     const bool is_taken = device_->set_input(time, name, value);
     overhear_sent();
     return is_taken;
   }
 
+ protected:
+  [[nodiscard]] Hosted& device() noexcept { return *device_; }
+  [[nodiscard]] const Hosted& device() const noexcept { return *device_; }
+
+  /// What the program does, as the checker is shown it and as the device gets it.
+  template <class Show, class Do>
+  void pass(Instant time, Show show_it, Do do_it) {
+    check_.hear([&](ProgramChecker& checker) {
+      check_.now_ = time;
+      show_it(checker);
+    });
+    do_it();
+    overhear_sent();
+  }
+
  private:
   void overhear_sent() {
-    for (const auto& message : device_->sent().subspan(heard_)) {
-      check_.checker_->from_device(message.time, message.bytes);
-    }
+    check_.hear([&](ProgramChecker& checker) {
+      for (const auto& sent : device_->sent().subspan(heard_)) show(checker, sent);
+    });
     heard_ = device_->sent().size();
-    check_.take_offences();
   }
 
   ProgramCheck& check_;
-  std::unique_ptr<HostedStream> device_;
+  std::unique_ptr<Hosted> device_;
   std::size_t heard_ = 0;  ///< of what was sent and not cleared
 };
 
-/// The same with connections.
-class ProgramCheck::OverheardServer final : public HostedServer {
+class ProgramCheck::OverheardStream final : public Overheard<HostedStream> {
  public:
-  OverheardServer(ProgramCheck& check, std::unique_ptr<HostedServer> server)
-      : check_{check}, server_{std::move(server)} {}
+  using Overheard::Overheard;
 
-  [[nodiscard]] bool is_listening() const override { return server_->is_listening(); }
+  void receive(Instant time, Bytes bytes) override {
+    pass(
+        time, [&](ProgramChecker& checker) { checker.to_device(time, bytes); },
+        [&] { device().receive(time, bytes); });
+  }
+  [[nodiscard]] std::size_t unread() const override { return device().unread(); }
+};
+
+class ProgramCheck::OverheardServer final : public Overheard<HostedServer> {
+ public:
+  using Overheard::Overheard;
+
+  [[nodiscard]] bool is_listening() const override { return device().is_listening(); }
   [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {
-    const auto id = server_->connect(time);
-    if (id) tell({time, *id, Kind::kBegun, {}});
-    overhear_sent();
+    const auto id = device().connect(time);
+    if (id) pass({time, *id, Kind::kBegun, {}}, [] {});
     return id;
   }
   void receive(Instant time, ConnectionId id, Bytes segment) override {
-    tell({time, id, Kind::kToServer, segment});
-    server_->receive(time, id, segment);
-    overhear_sent();
+    pass({time, id, Kind::kToServer, segment}, [&] { device().receive(time, id, segment); });
   }
   void half_close(Instant time, ConnectionId id) override {
-    tell({time, id, Kind::kHalfClosed, {}});
-    server_->half_close(time, id);
-    overhear_sent();
+    pass({time, id, Kind::kHalfClosed, {}}, [&] { device().half_close(time, id); });
   }
   void close(Instant time, ConnectionId id) override {
-    tell({time, id, Kind::kClosed, {}});
-    server_->close(time, id);
-    overhear_sent();
+    pass({time, id, Kind::kClosed, {}}, [&] { device().close(time, id); });
   }
   void reset(Instant time, ConnectionId id) override {
-    tell({time, id, Kind::kReset, {}});
-    server_->reset(time, id);
-    overhear_sent();
+    pass({time, id, Kind::kReset, {}}, [&] { device().reset(time, id); });
   }
-  [[nodiscard]] std::size_t unread(ConnectionId id) const override { return server_->unread(id); }
-
-  void advance_to(Instant time) override {
-    check_.now_ = time;
-    server_->advance_to(time);
-    overhear_sent();
-  }
-  [[nodiscard]] std::optional<Instant> next_event() const override { return server_->next_event(); }
-  [[nodiscard]] std::span<const Event> sent() const override { return server_->sent(); }
-  void clear_sent() override {
-    server_->clear_sent();
-    heard_ = 0;
-  }
-  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
-    const bool is_taken = server_->set_input(time, name, value);
-    overhear_sent();
-    return is_taken;
-  }
-  [[nodiscard]] std::vector<std::string> take_log() override { return server_->take_log(); }
+  [[nodiscard]] std::size_t unread(ConnectionId id) const override { return device().unread(id); }
 
  private:
-  using Kind = ConnectionEvent::Kind;
-
-  void tell(const ConnectionEvent& event) {
-    check_.now_ = event.time;
-    check_.checker_->on_connection(event);
+  template <class Do>
+  void pass(const ConnectionEvent& event, Do do_it) {
+    Overheard::pass(
+        event.time, [&](ProgramChecker& checker) { checker.on_connection(event); }, do_it);
   }
-  void overhear_sent() {
-    for (const auto& event : server_->sent().subspan(heard_)) {
-      const bool is_data = event.kind == SessionEvent::Kind::kData;
-      check_.checker_->on_connection({event.time, event.connection,
-                                      is_data ? Kind::kFromServer : Kind::kDropped, event.bytes});
-    }
-    heard_ = server_->sent().size();
-    check_.take_offences();
-  }
-
-  ProgramCheck& check_;
-  std::unique_ptr<HostedServer> server_;
-  std::size_t heard_ = 0;  ///< of what was sent and not cleared
 };
 
 ProgramCheck::ProgramCheck(const ProgramCheckEntry& entry, const LinkNoise& noise,
@@ -153,23 +145,21 @@ ProgramCheck::ProgramCheck(const ProgramCheckEntry& entry, const LinkNoise& nois
     : entry_{entry}, checker_{entry.make(noise)}, on_offence_{std::move(on_offence)} {}
 
 std::unique_ptr<HostedStream> ProgramCheck::watch(std::unique_ptr<HostedStream> device) {
-  return std::make_unique<Overheard>(*this, std::move(device));
+  return std::make_unique<OverheardStream>(*this, std::move(device));
 }
 
 std::unique_ptr<HostedServer> ProgramCheck::watch(std::unique_ptr<HostedServer> server) {
   return std::make_unique<OverheardServer>(*this, std::move(server));
 }
 
-void ProgramCheck::to_device(Instant time, Bytes bytes) {
-  now_ = time;
-  checker_->to_device(time, bytes);
-  take_offences();
-}
-
-void ProgramCheck::from_device(Instant time, Bytes bytes) {
-  now_ = time;
-  checker_->from_device(time, bytes);
-  take_offences();
+std::function<void(Instant time, Bytes message)> ProgramCheck::bus_listener() {
+  return [this](Instant time, Bytes message) {
+    hear([&](ProgramChecker& checker) {
+      now_ = time;
+      const bool is_read = (message[0] & std::byte{1}) != std::byte{};
+      is_read ? checker.from_device(time, message) : checker.to_device(time, message);
+    });
+  };
 }
 
 void ProgramCheck::take_offences() {
@@ -181,12 +171,14 @@ void ProgramCheck::take_offences() {
   }
 }
 
-std::size_t ProgramCheck::count(std::string_view requirement) const noexcept {
+std::size_t ProgramCheck::count(std::string_view requirement) const {
+  const std::lock_guard lock{guard_};
   const auto record = records_.find(requirement);
   return record == records_.end() ? 0 : record->second.count;
 }
 
 Report ProgramCheck::finish() {
+  const std::lock_guard lock{guard_};
   checker_->finish(now_);
   take_offences();
   Report report;
@@ -201,13 +193,9 @@ Report ProgramCheck::finish() {
 }
 
 ReportRow ProgramCheck::row_of(const Requirement& requirement) const {
-  ReportRow row;
+  auto row = row_about(requirement);
   row.name = requirement.id;
   row.summary = requirement.text;
-  row.requirement = requirement.id;
-  row.level = requirement.level;
-  row.demand = requirement.text;
-  row.source = requirement.source;
   const auto found = records_.find(requirement.id);
   if (found != records_.end()) {
     const auto& record = found->second;

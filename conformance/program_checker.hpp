@@ -2,11 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "conformance/requirement.hpp"
+#include "conformance/wording.hpp"
 #include "harness/core/bytes.hpp"
 #include "harness/core/time.hpp"
 
@@ -18,6 +23,9 @@ struct Offence {
   std::string_view requirement;
   std::string what;  ///< one sentence: what it did, with the numbers
 };
+
+/// Takes an offence: the requirement's id, and what the program did, in one sentence.
+using Complain = std::function<void(std::string_view requirement, std::string what)>;
 
 /// Something on one of the connections of a server.
 struct ConnectionEvent {
@@ -68,6 +76,12 @@ class ProgramChecker {
     offences_.push_back({time, requirement, std::move(what)});
   }
 
+  Instant now_{};  ///< of what it is shown
+  /// An offence now.
+  const Complain complain_ = [this](std::string_view requirement, std::string what) {
+    add(now_, requirement, std::move(what));
+  };
+
  private:
   std::vector<Offence> offences_;
 };
@@ -76,5 +90,23 @@ class ProgramChecker {
 struct LinkNoise {
   Duration most{};
 };
+
+/// What is demanded of programs that talk to a device, and who judges it.
+struct ProgramCheckEntry {
+  std::string_view device;
+  std::span<const Requirement> (*requirements)() noexcept;
+  std::unique_ptr<ProgramChecker> (*make)(const LinkNoise& noise);
+};
+
+template <class Checker>
+[[nodiscard]] std::unique_ptr<ProgramChecker> make_checker(const LinkNoise& noise) {
+  return std::make_unique<Checker>(noise);
+}
+
+/// A demand on programs.
+consteval Requirement of_host(std::string_view id, Level level, std::string_view text,
+                              std::string_view source) {
+  return {.id = id, .level = level, .text = text, .source = source, .role = Role::kHost};
+}
 
 }  // namespace armjig

@@ -17,4 +17,13 @@ std::string_view to_string(Profiles profiles) noexcept {
   return kNames[static_cast<std::size_t>(profiles)];
 }
 
+ReportRow row_about(const Requirement& requirement) {
+  ReportRow row;
+  row.requirement = requirement.id;
+  row.level = requirement.level;
+  row.demand = requirement.text;
+  row.source = requirement.source;
+  return row;
+}
+
 }  // namespace armjig

@@ -48,4 +48,7 @@ struct Requirement {
   std::string_view unobservable{};
 };
 
+/// A row of a report about one, with nothing found.
+[[nodiscard]] ReportRow row_about(const Requirement& requirement);
+
 }  // namespace armjig

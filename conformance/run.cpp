@@ -231,15 +231,10 @@ class Run {
   }
 
   [[nodiscard]] ReportRow row_of(const Case& one, Finding finding) const {
-    const auto& requirement = requirement_of(suite_, one);
-    ReportRow row;
+    auto row = row_about(requirement_of(suite_, one));
     row.verdict = finding.judgement.verdict;
     row.name = name_of(one);
     row.summary = one.rule;
-    row.requirement = requirement.id;
-    row.level = requirement.level;
-    row.demand = requirement.text;
-    row.source = requirement.source;
     row.expected = std::move(finding.judgement.expected);
     row.actual = std::move(finding.judgement.actual);
     row.evidence = std::move(finding.evidence);

@@ -5,21 +5,18 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
-#include "conformance/bench.hpp"
+#include "conformance/port_bench.hpp"
 #include "harness/core/bytes.hpp"
-#include "harness/rig/rig.hpp"
-#include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
 /// A conversation with a device on a byte stream. The same calls mean the same in virtual and in
 /// real time. Once a case is decided, or the port has failed, sending does nothing, nothing arrives
 /// and no time passes.
-class StreamBench : public Bench {
+class StreamBench : public DissectedBench<StreamPort> {
  public:
-  StreamBench(Rig rig, const DissectorEntry& device);
+  StreamBench(Rig<StreamPort> rig, std::unique_ptr<Dissector> dissector);
 
   /// What the guard forbids skips the case, for the device has not done anything wrong.
   void send(Bytes bytes);
@@ -33,28 +30,11 @@ class StreamBench : public Bench {
   /// Forgets what has arrived, until nothing more came for `quiet`.
   void drain(Duration quiet);
 
-  /// Does at the device what its link cannot: a switch, an input, the power. Skips the case where
-  /// nobody can.
-  void touch(std::string_view input, std::int64_t value);
-
-  [[nodiscard]] Instant now() const override;
-  [[nodiscard]] const std::optional<Error>& error() const override { return error_; }
-  [[nodiscard]] std::string last_exchange() const override;
-
- protected:
-  void forget_exchange() override { exchange_.clear(); }
-
  private:
-  [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over(); }
   void read_until(Instant deadline);
   void skip_if_stopped();
-  void remember(const Message& message);
 
-  Rig rig_;
-  std::unique_ptr<Dissector> dissector_;
   std::deque<Message> arrived_;
-  std::deque<Message> exchange_;
-  std::optional<Error> error_;
   bool knows_it_is_stopped_ = false;
 };
 

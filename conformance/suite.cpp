@@ -4,24 +4,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-
-#include "conformance/demo/suite.hpp"
-#include "conformance/kinovazed/suite.hpp"
-#include "conformance/morap/suite.hpp"
-#include "conformance/parol6/suite.hpp"
 
 namespace armjig {
 
 std::string name_of(const Case& one) {
   if (one.variant.empty()) return std::string{one.requirement};
   return fmt::format("{}.{}", one.requirement, one.variant);
-}
-
-std::span<const Suite> suites() noexcept {
-  static const std::array kSuites{demo::suite(), kinovazed::suite(), morap::suite(),
-                                  parol6::suite()};
-  return kSuites;
 }
 
 const Requirement* find_requirement(const Suite& suite, std::string_view id) noexcept {

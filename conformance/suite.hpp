@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "conformance/bench.hpp"
 #include "conformance/requirement.hpp"
-#include "harness/core/error.hpp"
 #include "harness/rig/guard.hpp"
-#include "harness/rig/rig.hpp"
 
 namespace armjig {
 
@@ -28,6 +24,24 @@ struct Case {
   Tier tier = Tier::kQuick;
   std::uint8_t start = 0;  ///< the state that it needs, an index into the suite's
 };
+
+/// A case that starts elsewhere or does more than to look, as a line of a table.
+[[nodiscard]] constexpr Case from(std::uint8_t start, Hazard hazard, std::string_view requirement,
+                                  std::string_view rule, void (*run)(Bench&),
+                                  std::string_view variant = {}) noexcept {
+  return {.requirement = requirement,
+          .variant = variant,
+          .rule = rule,
+          .run = run,
+          .hazard = hazard,
+          .start = start};
+}
+
+/// One that takes too long for quick runs.
+[[nodiscard]] constexpr Case full(Case one) noexcept {
+  one.tier = Tier::kFull;
+  return one;
+}
 
 /// The requirement's id, and the variant behind it: a name of its own for every case.
 [[nodiscard]] std::string name_of(const Case& one);
@@ -52,12 +66,7 @@ struct Suite {
   std::string_view version;  ///< of the catalogue; changes with every requirement and case
   std::span<const Chapter> chapters;
   std::span<const StartState> starts;
-  /// Opens a target. Problems: those of `Rig::open`.
-  Outcome<std::unique_ptr<Bench>> (*open)(const RigOptions& how){};
 };
-
-/// One for each device.
-[[nodiscard]] std::span<const Suite> suites() noexcept;
 
 /// The requirement of that id, or nullptr.
 [[nodiscard]] const Requirement* find_requirement(const Suite& suite, std::string_view id) noexcept;

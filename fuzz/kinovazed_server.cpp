@@ -18,6 +18,7 @@ namespace armjig::fuzz::kinova {
 namespace {
 
 using namespace kinovazed;
+using namespace emulation;
 using namespace std::chrono_literals;
 
 std::string answers(const ServerOptions& options, Bytes stream, std::size_t piece) {

@@ -19,9 +19,9 @@ namespace armjig::fuzz {
 namespace {
 
 using namespace std::chrono_literals;
-using parol6::Board;
 using parol6::Command;
 using parol6::kJointCount;
+using parol6::emulation::Board;
 
 /// What one input may cost the board that computes every pass.
 constexpr std::int64_t kMostPasses = 6'000;
@@ -106,7 +106,8 @@ std::vector<Beginning> make_prepared() {
   constexpr std::array kDemoTimes{1s, 19s, 20s, 22s, 26s, 40s};
   constexpr std::uint32_t kPeriod = 20;
   std::vector<Beginning> boards;
-  Board homing{parol6::standard_plant(), {.pass_period = std::chrono::microseconds{kPeriod}}};
+  Board homing{parol6::emulation::standard_plant(),
+               {.pass_period = std::chrono::microseconds{kPeriod}}};
   homing.receive(at(0s), command(Command::kHome));
   homing.receive(at(10ms), command(Command::kIdle));
   for (const auto time : kHomingTimes) {
@@ -114,7 +115,8 @@ std::vector<Beginning> make_prepared() {
     homing.clear_sent();
     boards.push_back({homing, at(time), kPeriod});
   }
-  Board demo{parol6::standard_plant(), {.pass_period = std::chrono::microseconds{kPeriod}}};
+  Board demo{parol6::emulation::standard_plant(),
+             {.pass_period = std::chrono::microseconds{kPeriod}}};
   demo.receive(at(0s), command(Command::kDemo));
   for (const auto time : kDemoTimes) {
     demo.advance_to(at(time));
@@ -126,17 +128,17 @@ std::vector<Beginning> make_prepared() {
 
 Beginning fresh_board(Input& input) {
   constexpr std::array<std::uint32_t, 8> kPeriods{20, 10, 1, 7, 37, 50, 100, 1000};
-  parol6::BoardTiming timing;
+  parol6::emulation::BoardTiming timing;
   const auto clocks = input.u8();
   timing.pass_period = std::chrono::microseconds{kPeriods[clocks & 7]};
   if ((clocks & 0x08) != 0) timing.micros_at_start = UINT32_MAX - 20'000;  // wraps soon
   if ((clocks & 0x10) != 0) timing.timer_bits = 32;
   if ((clocks & 0x20) != 0) timing.timer_at_start = Ticks{65'000};
-  auto plant = parol6::standard_plant();
+  auto plant = parol6::emulation::standard_plant();
   for (auto& axis : plant.axes) {
     axis.position = Steps{0};
     axis.limit.threshold = Steps{static_cast<std::int8_t>(input.u8())};
-    if ((clocks & 0x40) != 0) axis.limit.side = parol6::LimitSwitch::Side::kAtOrAbove;
+    if ((clocks & 0x40) != 0) axis.limit.side = parol6::emulation::LimitSwitch::Side::kAtOrAbove;
   }
   return {Board{plant, timing}, at(0s), static_cast<std::uint32_t>(timing.pass_period.count())};
 }
@@ -171,7 +173,8 @@ class Pair {
 
  private:
   void compare() {
-    const auto is_same = [](const parol6::Emission& a, const parol6::Emission& b) {
+    const auto is_same = [](const parol6::emulation::Emission& a,
+                            const parol6::emulation::Emission& b) {
       return a.time == b.time && a.what == b.what;
     };
     require(std::ranges::equal(fast_.sent(), plain_.sent(), is_same), "both send the same");
@@ -196,7 +199,7 @@ void touch(Input& input, Pair& pair) {
   const auto j = static_cast<std::size_t>(what >> 3) % kJointCount;
   const auto shift = input.i16();
   pair.both([&](Board& board) {
-    board.touch(pair.time(), [&](parol6::Plant& plant) {
+    board.touch(pair.time(), [&](parol6::emulation::Plant& plant) {
       auto& axis = plant.axes[j];
       switch (what & 7) {
         case 0:
@@ -206,13 +209,13 @@ void touch(Input& input, Pair& pair) {
           plant.inputs.in1 = opposite(plant.inputs.in1);
           break;
         case 2:
-          axis.switch_state = parol6::Axis::SwitchState::kStuckClosed;
+          axis.switch_state = parol6::emulation::Axis::SwitchState::kStuckClosed;
           break;
         case 3:
-          axis.switch_state = parol6::Axis::SwitchState::kStuckOpen;
+          axis.switch_state = parol6::emulation::Axis::SwitchState::kStuckOpen;
           break;
         case 4:
-          axis.switch_state = parol6::Axis::SwitchState::kWorking;
+          axis.switch_state = parol6::emulation::Axis::SwitchState::kWorking;
           break;
         case 5:
           axis.is_jammed = !axis.is_jammed;
@@ -251,7 +254,7 @@ void operate(Input& input, Pair& pair, const Beginning& start) {
       touch(input, pair);
       break;
     case 6: {
-      parol6::CanFrame frame;
+      parol6::emulation::CanFrame frame;
       frame.id = static_cast<std::uint16_t>(input.i16() & 0x7FF);
       frame.size = input.u8() % 9;
       for (auto& byte : frame.data) byte = static_cast<std::byte>(input.u8());

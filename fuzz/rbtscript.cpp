@@ -41,7 +41,7 @@ bool is_short(const script::Program& program) {
     if (const auto* const delay = std::get_if<script::Delay>(&statement.command)) {
       seconds += delay->seconds;
     }
-    if (const auto* const move = std::get_if<parol6::Move>(&statement.command)) {
+    if (const auto* const move = std::get_if<parol6::planning::Move>(&statement.command)) {
       seconds += move->timing.duration.value_or(5);
     }
   }
@@ -56,7 +56,7 @@ void check_program(std::string_view text, Dialect dialect) {
   require(script::format(*formatted, dialect) == *formatted, "formatting twice changes nothing");
   (void)script::check(*program);
   if (!is_short(*program)) return;
-  const auto schedule = script::schedule(*program, {}, parol6::standby());
+  const auto schedule = script::schedule(*program, {}, parol6::planning::standby());
   if (!schedule) return check_errors({schedule.error()}, text);
   require(schedule->statements.size() == schedule->frames.size(), "each frame has its line");
   require(!script::check(*program, *schedule).empty(), "a schedule has a length");

@@ -10,6 +10,7 @@
 #include "emulators/replay/replay.hpp"
 #include "fuzz/require.hpp"
 #include "harness/capture/trace.hpp"
+#include "tests/portable/recorded_devices.hpp"
 
 namespace armjig::fuzz {
 namespace {
@@ -35,12 +36,14 @@ void check_trace(std::string_view text) {
     require(!trace.error().hint.empty(), "a problem says what is wrong");
     return;
   }
+  const auto* const device = test::recorded_device(*trace);
+  const auto make_dissector = device != nullptr ? device->make_dissector : nullptr;
   const auto all_missing = first_difference(trace->events, {});
   require(all_missing.has_value() == !trace->events.empty(), "missing events are a difference");
-  if (all_missing) (void)describe(*all_missing, *trace);
-  if (!is_quickly_replayed(trace->header)) return;
-  const auto difference = verify(*trace);
-  if (difference && *difference) (void)describe(**difference, *trace);
+  if (all_missing) (void)describe(*all_missing, *trace, make_dissector);
+  if (device == nullptr || !is_quickly_replayed(trace->header)) return;
+  const auto difference = verify(*trace, device->replay);
+  if (difference && *difference) (void)describe(**difference, *trace, make_dissector);
 }
 
 }  // namespace

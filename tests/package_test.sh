@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs a build and makes Debian packages of it; both must serve a user who has nothing else.
+# In CI the -dev packages also serve somebody in a bare Debian 12, with what they depend on and a
+# compiler, and no more.
 #
 #   tests/package_test.sh build/release
 set -euo pipefail
@@ -20,10 +22,13 @@ check_program() {
 
 # A project that knows only the prefix finds the libraries in it, and runs.
 check_libraries() {
-  cmake -G Ninja -S tests/consumer -B "$work/consumer" --fresh -DCMAKE_PREFIX_PATH="$1"
-  cmake --build "$work/consumer" -j "$(nproc)"
-  "$work/consumer/talk_to_board"
-  "$work/consumer/check_board"
+  local consumer
+  for consumer in embedded whole; do
+    cmake -G Ninja -S "tests/consumer/$consumer" -B "$work/$consumer" --fresh \
+      -DCMAKE_PREFIX_PATH="$1"
+    cmake --build "$work/$consumer" -j "$(nproc)"
+    "$work/$consumer/consumer"
+  done
 }
 
 make_packages() {
@@ -39,6 +44,35 @@ check_dpkg() {
   [[ ! -e /usr/bin/armjig ]]
 }
 
+# A system with a compiler and nothing else of ours.
+make_bare_root() {
+  local mirror
+  # shellcheck disable=SC2016  # apt expands it
+  mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Codename: bookworm' 'Component: main' \
+    'Created-By: Packages' | head -n 1)
+  debootstrap --variant=minbase --include=g++,cmake,ninja-build bookworm "$work/root" "$mirror"
+  cp -r "$work/packages" tests/consumer "$work/root/srv/"
+}
+
+# check_in_root PACKAGE CONSUMER FORBIDDEN: a project builds and runs with that package alone. What
+# matches FORBIDDEN must not come with it.
+check_in_root() {
+  # shellcheck disable=SC2016  # the shell in there expands it
+  chroot "$work/root" /bin/bash -euo pipefail -c '
+    apt-get -q -y install --no-install-recommends /srv/packages/libarmjig-embedded-dev_*.deb \
+      /srv/packages/$1_*.deb
+    if dpkg-query -W -f "\${Package}\n" | grep -E "$3"; then exit 1; fi
+    cmake -G Ninja -S "/srv/consumer/$2" -B "/srv/$2"
+    cmake --build "/srv/$2"
+    "/srv/$2/consumer"' -- "$1" "$2" "$3"
+}
+
+check_bare_systems() {
+  make_bare_root
+  check_in_root libarmjig-embedded-dev embedded '^lib(boost|glib2|usb|serialport|umockdev|toml)'
+  check_in_root libarmjig-dev whole '^libboost'
+}
+
 cmake --install "$build" --prefix "$work/installed" >/dev/null
 check_program "$work/installed"
 check_libraries "$work/installed"
@@ -47,5 +81,8 @@ make_packages
 for package in "$work"/packages/*.deb; do dpkg -x "$package" "$work/unpacked"; done
 check_program "$work/unpacked/usr"
 check_libraries "$work/unpacked/usr"
-if [[ ${CI:-} == true ]] && ((EUID == 0)); then check_dpkg; fi
+if [[ ${CI:-} == true ]] && ((EUID == 0)); then
+  check_dpkg
+  check_bare_systems
+fi
 echo 'package test: passed'

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/demo/mutants.hpp"
-
 #include <array>
 
+#include "conformance/demo/suite.hpp"
 #include "harness/wire/demo/demo.hpp"
 
-namespace armjig::demo {
+namespace armjig::demo::conformance {
 namespace {
 
 constexpr std::array kEquivalents{EquivalentFault{"stuck:start", "it has only one value"}};
@@ -25,4 +24,4 @@ std::vector<NamedFault> all_faults() {
 
 MutantsEntry mutants_entry() noexcept { return {"demo", all_faults, kEquivalents, kHints}; }
 
-}  // namespace armjig::demo
+}  // namespace armjig::demo::conformance

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/demo/suite.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "conformance/stream_bench.hpp"
-#include "emulators/host/devices.hpp"
 #include "harness/wire/demo/demo.hpp"
 
-namespace armjig::demo {
+namespace armjig::demo::conformance {
 namespace {
 
 using namespace std::chrono_literals;
@@ -24,9 +22,7 @@ constexpr std::array kRequirements{
 /// The vocabulary: operations out, states back.
 class MachineBench final : public StreamBench {
  public:
-  explicit MachineBench(Rig rig)
-      : StreamBench{std::move(rig),
-                    *std::ranges::find(dissectors(), "demo", &DissectorEntry::device)} {}
+  explicit MachineBench(Rig<StreamPort> rig) : StreamBench{std::move(rig), make_dissector()} {}
 
   bool is_alive() override {
     drain(10ms);
@@ -38,7 +34,6 @@ class MachineBench final : public StreamBench {
     (void)receive(100ms);  // what it answers is for the cases to judge
   }
   void measure_noise() override {}
-  [[nodiscard]] Duration noise() const override { return {}; }
 
   void expect_state(State state) {
     const auto& field = reply_fields()[1];
@@ -80,14 +75,12 @@ constexpr std::array kCases{
 constexpr std::array kStarts{StartState{"halted", Hazard::kObserve}};
 constexpr std::array kChapters{Chapter{"The machine", kRequirements, kCases}};
 
-Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
-  auto rig = Rig::open("demo", how, hosted_device("demo").open);
-  if (!rig) return tl::unexpected{rig.error()};
-  return std::make_unique<MachineBench>(*std::move(rig));
-}
-
 }  // namespace
 
-Suite suite() noexcept { return {"demo", "1", kChapters, kStarts, open}; }
+Suite suite() noexcept { return {"demo", "1", kChapters, kStarts}; }
 
-}  // namespace armjig::demo
+Outcome<std::unique_ptr<Bench>> make_bench(Rig<StreamPort> rig, const RigOptions& /*how*/) {
+  return std::make_unique<MachineBench>(std::move(rig));
+}
+
+}  // namespace armjig::demo::conformance

@@ -6,7 +6,7 @@
 #include "conformance/suite.hpp"
 
 /// The chapters of the KinovaZED suite: requirements in catalogue/, cases in cases/.
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 
 [[nodiscard]] std::span<const Requirement> connection_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> line_requirements() noexcept;
@@ -20,6 +20,7 @@ namespace armjig::kinovazed {
 [[nodiscard]] std::span<const Requirement> arm_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> robust_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> death_requirements() noexcept;
+/// Of programs.
 
 [[nodiscard]] std::span<const Case> connection_cases() noexcept;
 [[nodiscard]] std::span<const Case> line_cases() noexcept;
@@ -34,4 +35,4 @@ namespace armjig::kinovazed {
 [[nodiscard]] std::span<const Case> robust_cases() noexcept;
 [[nodiscard]] std::span<const Case> death_cases() noexcept;
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

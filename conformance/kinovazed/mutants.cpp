@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/kinovazed/mutants.hpp"
-
 #include <array>
 
+#include "conformance/kinovazed/suite.hpp"
 #include "emulators/kinovazed/defects/faults.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
 constexpr std::string_view kUnknown = "the document does not have it";
@@ -39,6 +38,8 @@ constexpr std::array kHints{
 
 }  // namespace
 
-MutantsEntry mutants_entry() noexcept { return {"kinovazed", all_faults, kEquivalents, kHints}; }
+MutantsEntry mutants_entry() noexcept {
+  return {"kinovazed", emulation::all_faults, kEquivalents, kHints};
+}
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

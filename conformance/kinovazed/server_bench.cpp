@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
 using namespace std::chrono_literals;
@@ -24,16 +24,6 @@ constexpr Duration kBeatIsOld = 100ms;
 constexpr Duration kAcceptedTime = 150ms;
 /// When they come is a requirement of its own.
 constexpr Duration kBeatTime = 2500ms;
-
-double milliseconds(Duration time) {
-  return std::chrono::duration<double, std::milli>(time).count();
-}
-
-std::string text_of(const ServerMessage& message) {
-  auto text = std::string{encode(message).view()};
-  text.resize(text.size() - 2);
-  return text;
-}
 
 /// Control characters and what is no ASCII as escapes; long lines cut.
 std::string printable(std::string_view text) {
@@ -51,8 +41,8 @@ bool is_event_free(std::string_view command) {
 
 }  // namespace
 
-ServerBench::ServerBench(std::unique_ptr<SessionSource> source) : source_{std::move(source)} {
-  clients_.emplace_back().port = source_->make_port();
+ServerBench::ServerBench(Rig<SessionSource> rig) : PortBench{std::move(rig)} {
+  clients_.emplace_back().port = port().make_port();
 }
 
 ServerBench::~ServerBench() = default;
@@ -62,7 +52,7 @@ Result<void> ServerBench::begin_session() {
   const auto deadline = first.port->now() + 3s;
   auto connected = first.port->connect(deadline);
   while (!connected && first.port->now() < deadline) {
-    source_->pause(100ms);
+    port().pause(100ms);
     connected = first.port->connect(deadline);
   }
   first.is_connected = connected.has_value();
@@ -73,13 +63,10 @@ Instant ServerBench::now() const { return clients_[current_].port->now(); }
 
 ServerBench::Client& ServerBench::client() { return clients_[current_]; }
 
-Duration ServerBench::answer_time() const { return std::max<Duration>(2s, 20 * noise_); }
-Duration ServerBench::silence_time() const { return std::max<Duration>(250ms, 5 * noise_); }
+Duration ServerBench::answer_time() const { return std::max<Duration>(2s, 20 * noise()); }
+Duration ServerBench::silence_time() const { return std::max<Duration>(250ms, 5 * noise()); }
 
-void ServerBench::forget_exchange() {
-  exchange_.clear();
-  about_.clear();
-}
+void ServerBench::forget_exchange() { exchange_.clear(); }
 
 std::string ServerBench::last_exchange() const {
   std::string text;
@@ -93,10 +80,6 @@ void ServerBench::remember(std::string_view arrow, std::string_view text) {
   if (exchange_.size() > kRemembered) exchange_.pop_front();
 }
 
-std::string ServerBench::behind(std::string text) const {
-  return about_.empty() ? text : fmt::format("{} ({})", text, about_);
-}
-
 std::string ServerBench::silence_of(Duration time) {
   if (client().has_ended) return "the end of the connection";
   return fmt::format("nothing within {:.0f} ms", milliseconds(time));
@@ -105,7 +88,7 @@ std::string ServerBench::silence_of(Duration time) {
 // Connections.
 
 void ServerBench::as(std::size_t client) {
-  while (clients_.size() <= client) clients_.emplace_back().port = source_->make_port();
+  while (clients_.size() <= client) clients_.emplace_back().port = port().make_port();
   current_ = client;
 }
 
@@ -119,7 +102,7 @@ bool ServerBench::connect_again(Duration patience) {
     one.is_connected = connected.has_value();
     if (connected) return true;
     if (one.port->now() >= deadline) return false;
-    source_->pause(100ms);
+    port().pause(100ms);
   }
 }
 
@@ -132,26 +115,26 @@ void ServerBench::connect() {
 void ServerBench::leave() {
   if (is_deaf()) return;
   remember("closes", "");
-  port().close();
+  session().close();
   client().is_connected = false;
 }
 
 void ServerBench::finish_sending() {
   if (is_deaf()) return;
   remember("closes its side", "");
-  port().half_close();
+  session().half_close();
 }
 
 void ServerBench::throw_away() {
   if (is_deaf()) return;
   remember("resets", "");
-  port().reset();
+  session().reset();
   client().is_connected = false;
 }
 
 void ServerBench::expect_end() {
   const auto word = next_word(answer_time());
-  if (word) return fail(behind("the end of the connection"), text_of(word->message));
+  if (word) return fail(behind("the end of the connection"), std::string{word->text()});
   if (!is_deaf() && !client().has_ended) {
     fail(behind("the end of the connection"), silence_of(answer_time()));
   }
@@ -159,7 +142,7 @@ void ServerBench::expect_end() {
 
 void ServerBench::expect_quiet(Duration time) {
   const auto word = next_word(time);
-  if (word) return fail(behind("nothing but beats"), text_of(word->message));
+  if (word) return fail(behind("nothing but beats"), std::string{word->text()});
   if (!is_deaf() && client().has_ended) {
     fail(behind("an open connection"), "the end of the connection");
   }
@@ -169,7 +152,7 @@ void ServerBench::expect_no_message(Duration time) {
   client().beats.clear();
   expect_quiet(time);
   if (client().beats.empty()) return;
-  fail(behind("no message at all"), text_of(client().beats.front().message));
+  fail(behind("no message at all"), std::string{client().beats.front().text()});
 }
 
 // Lines.
@@ -178,16 +161,16 @@ void ServerBench::send(std::string_view segment) {
   if (is_deaf()) return;
   if (segment.starts_with("SetJoystickMode")) mode_said_ = now();
   remember(">", segment);
-  const auto sent = port().send(std::as_bytes(std::span{segment}));
+  const auto sent = session().send(std::as_bytes(std::span{segment}));
   if (sent) return;
-  if (sent.error().code == ErrorCode::kForbidden) return skip("the guard does not allow it");
+  if (sent.error().code == ErrorCode::kForbidden) return (void)is_done(sent);
   client().has_ended = true;
 }
 
 void ServerBench::pause(Duration time) {
   const auto deadline = now() + time;
   while (!is_deaf() && now() < deadline) {
-    if (!client().is_connected || client().has_ended) return source_->pause(deadline - now());
+    if (!client().is_connected || client().has_ended) return port().pause(deadline - now());
     read_until(deadline);
   }
 }
@@ -195,7 +178,7 @@ void ServerBench::pause(Duration time) {
 /// Reads once.
 void ServerBench::read_until(Instant deadline) {
   std::array<std::byte, 4096> buffer;
-  const auto received = port().receive(buffer, deadline);
+  const auto received = session().receive(buffer, deadline);
   if (!received || received->arrival == SessionPort::Arrival::kEnd ||
       received->arrival == SessionPort::Arrival::kReset) {
     client().has_ended = true;
@@ -219,7 +202,7 @@ void ServerBench::take_line(std::string_view line) {
     return fail(behind("one of the server's words and CR LF"),
                 fmt::format("'{}': {}", printable(line), describe(message.error())));
   }
-  const Heard heard{now(), one.count++, *message};
+  const Heard heard{now(), one.count++, *message, std::string{line}};
   if (std::holds_alternative<Heartbeat>(*message)) {
     one.last_beat = heard.time;
     one.beats.push_back(heard);
@@ -237,7 +220,7 @@ std::optional<Heard> ServerBench::next_word(Duration within) {
     read_until(deadline);
   }
   if (one.words.empty() || is_over()) return std::nullopt;
-  const auto word = one.words.front();
+  auto word = one.words.front();
   one.words.pop_front();
   return word;
 }
@@ -245,18 +228,18 @@ std::optional<Heard> ServerBench::next_word(Duration within) {
 Heard ServerBench::expect(Event wanted, Duration within) {
   const auto word = next_word(within);
   if (!word) {
-    fail_by_silence(behind(std::string{to_string(wanted)}), silence_of(within));
+    fail_by_silence(behind(to_string(wanted)), silence_of(within));
     return {now()};
   }
-  if (word->message != ServerMessage{wanted}) {
-    fail(behind(std::string{to_string(wanted)}), text_of(word->message));
+  if (!word->is(wanted)) {
+    fail(behind(to_string(wanted)), std::string{word->text()});
   }
   return *word;
 }
 
 void ServerBench::expect_silence() {
   const auto word = next_word(silence_time());
-  if (word) fail(behind("no answer"), text_of(word->message));
+  if (word) fail(behind("no answer"), std::string{word->text()});
 }
 
 void ServerBench::refuse(std::string_view command) {
@@ -280,12 +263,12 @@ Heard ServerBench::perform(std::string_view command, Event event, Duration withi
   say(command);
   const auto first = next_word(within);
   if (!first) {
-    fail_by_silence(behind(std::string{to_string(event)}), silence_of(within));
+    fail_by_silence(behind(to_string(event)), silence_of(within));
     return {now()};
   }
-  if (first->message == ServerMessage{Event::kAccepted}) return expect(event, within);
-  if (first->message != ServerMessage{event}) {
-    fail(behind(std::string{to_string(event)}), text_of(first->message));
+  if (first->is(Event::kAccepted)) return expect(event, within);
+  if (!first->is(event)) {
+    fail(behind(to_string(event)), std::string{first->text()});
   }
   is_documented() ? pass_over_accepted() : void(expect(Event::kAccepted));
   return *first;
@@ -294,7 +277,7 @@ Heard ServerBench::perform(std::string_view command, Event event, Duration withi
 /// A shipped server sends it, in front of the event or at times behind it.
 void ServerBench::pass_over_accepted() {
   const auto word = next_word(kAcceptedTime);
-  if (word && word->message != ServerMessage{Event::kAccepted}) client().words.push_front(*word);
+  if (word && !word->is(Event::kAccepted)) client().words.push_front(*word);
 }
 
 void ServerBench::expect_probe() {
@@ -327,7 +310,7 @@ std::optional<Heard> ServerBench::next_beat(Instant after, Duration within) {
     read_until(deadline);
   }
   if (one.beats.empty() || is_over()) return std::nullopt;
-  const auto beat = one.beats.front();
+  auto beat = one.beats.front();
   one.beats.pop_front();
   return beat;
 }
@@ -335,17 +318,16 @@ std::optional<Heard> ServerBench::next_beat(Instant after, Duration within) {
 Heard ServerBench::await_beat() { return await_beat_behind(now()); }
 
 Heard ServerBench::await_beat_behind(Instant time) {
-  const auto beat = next_beat(time, kBeatTime + noise_);
+  const auto beat = next_beat(time, kBeatTime + noise());
   if (!beat) fail_by_silence(behind("a heartbeat"), silence_of(kBeatTime));
   return beat.value_or(Heard{now()});
 }
 
 void ServerBench::expect_beat(int flags) {
   const auto wanted = fmt::format("Heartbeat:{}", flags);
-  const auto beat = next_beat(now() + kBeatIsOld, kBeatTime + kBeatIsOld + noise_);
+  const auto beat = next_beat(now() + kBeatIsOld, kBeatTime + kBeatIsOld + noise());
   if (!beat) return fail_by_silence(behind(wanted), silence_of(kBeatTime));
-  const auto text = text_of(beat->message);
-  if (text != wanted) fail(behind(wanted), text);
+  if (beat->raw != wanted + "\r\n") fail(behind(wanted), std::string{beat->text()});
 }
 
 std::size_t ServerBench::count_beats(Duration time) {
@@ -359,21 +341,17 @@ void ServerBench::wait_until_before_beat(Duration time) {
   pause(1s - time);
 }
 
-void ServerBench::expect_true(bool is_so, std::string_view wanted, std::string actual) {
-  if (!is_so) fail(behind(std::string{wanted}), std::move(actual));
-}
-
 // The server and its machine.
 
 void ServerBench::touch(std::string_view input, std::int64_t value) {
-  if (is_deaf() || source_->touch(input, value)) return;
+  if (is_deaf() || port().touch(input, value)) return;
   skip(fmt::format("needs a hand at the server, for {}", input));
 }
 
 void ServerBench::spoil(Recovery recovery) {
   if (is_deaf()) return;
   // As it is anyway; it shows whether there is a hand.
-  const bool has_hand = source_->touch("arm.fail.arm_open", 0);
+  const bool has_hand = port().touch("arm.fail.arm_open", 0);
   is_spoiled_ = has_hand || recovery == Recovery::kBySupervisor;
   if (!is_spoiled_) {
     skip("hangs the server: needs somebody who can end and start it, for no client can");
@@ -395,8 +373,8 @@ bool ServerBench::stop_all() {
   one.words.clear();
   send("\r\nEStop\r\n");
   for (auto word = next_word(answer_time()); word; word = next_word(answer_time())) {
-    if (word->message != ServerMessage{Event::kAccepted}) continue;
-    pause(30ms + 3 * noise_);
+    if (!word->is(Event::kAccepted)) continue;
+    pause(30ms + 3 * noise());
     one.words.clear();
     return true;
   }
@@ -408,7 +386,7 @@ void ServerBench::drop_others() {
   current_ = 0;
   if (clients_.size() == 1) return;
   clients_.erase(clients_.begin() + 1, clients_.end());
-  port().close();
+  session().close();
   client().is_connected = false;
 }
 
@@ -423,26 +401,26 @@ bool ServerBench::is_alive() {
 void ServerBench::measure_noise() {
   constexpr int kSamples = 20;
   for (int i = 0; i < kSamples && !client().has_ended; ++i) {
-    source_->pause(std::chrono::milliseconds{1 + i});
+    port().pause(std::chrono::milliseconds{1 + i});
     const auto asked = now();
     send("EStop\r\n");
     if (const auto answer = next_word(answer_time())) {
-      noise_ = std::max(noise_, answer->time - asked);
+      hear_noise(answer->time - asked);
     }
   }
 }
 
 void ServerBench::restart() {
-  const bool has_hand = source_->touch("restart", 1);
+  const bool has_hand = port().touch("restart", 1);
   if (!has_hand && start_ == kFresh) return skip("needs somebody who can start the server anew");
-  source_->pause(100ms);
+  port().pause(100ms);
   client().has_ended = true;
   mode_said_.reset();
 }
 
 /// For a server that does not stop.
 bool ServerBench::start_anew() {
-  return source_->touch("restart", 1) && connect_again(kRestartTime) && stop_all();
+  return port().touch("restart", 1) && connect_again(kRestartTime) && stop_all();
 }
 
 void ServerBench::bring_to(std::size_t start) {
@@ -467,4 +445,4 @@ void ServerBench::bring_to(std::size_t start) {
   about({});
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

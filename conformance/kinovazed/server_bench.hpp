@@ -9,11 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "conformance/bench.hpp"
-#include "harness/link/session_source.hpp"
+#include "conformance/port_bench.hpp"
 #include "harness/wire/kinovazed/line.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 
 /// The states in which cases begin, as indices into the suite's `starts`. One client is connected,
 /// and nothing is under way.
@@ -31,13 +30,22 @@ struct Heard {
   Instant time{};
   std::size_t order{};
   ServerMessage message;
+  std::string raw{};  ///< the bytes that came, which are judged, with their CR LF
+
+  /// The line as it may be shown.
+  [[nodiscard]] std::string_view text() const noexcept {
+    return std::string_view{raw}.substr(0, raw.find("\r\n"));
+  }
+  [[nodiscard]] bool is(Event event) const noexcept {
+    return text() == to_string(event) && raw.size() == text().size() + 2;
+  }
 };
 
 /// A conversation with a KinovaZED server, in the words of its protocol. Words are about one client
 /// at a time, the first one unless `as` says otherwise.
-class ServerBench final : public Bench {
+class ServerBench final : public PortBench<SessionSource> {
  public:
-  explicit ServerBench(std::unique_ptr<SessionSource> source);
+  explicit ServerBench(Rig<SessionSource> rig);
   ~ServerBench() override;
 
   [[nodiscard]] bool is_documented() const noexcept {
@@ -50,9 +58,7 @@ class ServerBench final : public Bench {
   [[nodiscard]] bool is_alive() override;
   void bring_to(std::size_t start) override;
   void measure_noise() override;
-  [[nodiscard]] Duration noise() const override { return noise_; }
   [[nodiscard]] Instant now() const override;
-  [[nodiscard]] const std::optional<Error>& error() const override { return error_; }
   [[nodiscard]] std::string last_exchange() const override;
 
   // Connections.
@@ -108,10 +114,6 @@ class ServerBench final : public Bench {
   /// Lets time pass until a beat is that far away.
   void wait_until_before_beat(Duration time);
 
-  /// What comes next is about this: it stands behind every expectation until it is said anew.
-  void about(std::string what) { about_ = std::move(what); }
-  void expect_true(bool is_so, std::string_view wanted, std::string actual);
-
   /// Does at the server what no client can; skips the case where nobody can.
   void touch(std::string_view input, std::int64_t value);
   /// What follows ends the server, or leaves it as no client can put it right: it is started anew
@@ -149,8 +151,7 @@ class ServerBench final : public Bench {
   };
 
   [[nodiscard]] Client& client();
-  [[nodiscard]] SessionPort& port() { return *client().port; }
-  [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over(); }
+  [[nodiscard]] SessionPort& session() { return *client().port; }
   [[nodiscard]] bool connect_again(Duration patience);
   void read_until(Instant deadline);
   void take_line(std::string_view line);
@@ -162,19 +163,14 @@ class ServerBench final : public Bench {
   void restart();
   [[nodiscard]] bool start_anew();
   void remember(std::string_view arrow, std::string_view text);
-  [[nodiscard]] std::string behind(std::string text) const;
   [[nodiscard]] std::string silence_of(Duration time);
 
-  std::unique_ptr<SessionSource> source_;
   std::vector<Client> clients_;
   std::size_t current_ = 0;
-  std::optional<Error> error_;
   std::deque<std::string> exchange_;
-  std::string about_;
   std::optional<Instant> mode_said_;
   Start start_ = kStopped;
-  Duration noise_{};
   bool is_spoiled_ = false;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

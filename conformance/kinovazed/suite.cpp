@@ -5,11 +5,10 @@
 #include <utility>
 
 #include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/host/checker.hpp"
+#include "conformance/kinovazed/host/check.hpp"
 #include "conformance/kinovazed/server_bench.hpp"
-#include "emulators/host/devices.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
 /// In the order of `Start`.
@@ -21,16 +20,6 @@ constexpr std::array kStarts{
     StartState{"retracted", Hazard::kMove},
     StartState{"just started", Hazard::kObserve},
 };
-
-Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
-  auto source = open_server("kinovazed", how, hosted_server("kinovazed").open);
-  if (!source) return tl::unexpected{source.error()};
-  auto bench = std::make_unique<ServerBench>(*std::move(source));
-  if (const auto begun = bench->begin_session(); !begun) {
-    return problem(begun.error().code, how.target.text, "is the server running, with its arm?");
-  }
-  return bench;
-}
 
 }  // namespace
 
@@ -48,9 +37,17 @@ Suite suite() noexcept {
       Chapter{"Supervision of the arm", arm_requirements(), arm_cases()},
       Chapter{"Robustness", robust_requirements(), robust_cases()},
       Chapter{"Deaths", death_requirements(), death_cases()},
-      Chapter{"Client programs", host_requirements(), {}},
+      Chapter{"Client programs", programs::host_requirements(), {}},
   };
-  return {"kinovazed", "0.2", kChapters, kStarts, open};
+  return {"kinovazed", "0.2", kChapters, kStarts};
 }
 
-}  // namespace armjig::kinovazed
+Outcome<std::unique_ptr<Bench>> make_bench(Rig<SessionSource> rig, const RigOptions& how) {
+  auto bench = std::make_unique<ServerBench>(std::move(rig));
+  if (const auto begun = bench->begin_session(); !begun) {
+    return problem(begun.error().code, how.target.text, "is the server running, with its arm?");
+  }
+  return bench;
+}
+
+}  // namespace armjig::kinovazed::conformance

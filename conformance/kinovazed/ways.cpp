@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/kinovazed/ways.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
+
+using namespace emulation;
 
 int beat_of(State state) noexcept {
   switch (state) {
@@ -59,4 +61,4 @@ void enter(ServerBench& server, State state) {
   }
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

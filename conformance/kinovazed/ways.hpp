@@ -9,7 +9,7 @@
 #include "harness/rig/guard.hpp"
 
 /// Ways into the states of the server, and what a beat says there.
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 
 /// A target so far away from the ready pose that the fastest arm needs more than a second.
 inline constexpr auto kFarObjective = "RunObjective:SuckDoor";
@@ -17,47 +17,43 @@ inline constexpr auto kFarObjective = "RunObjective:SuckDoor";
 inline constexpr Duration kBeforeBeat = std::chrono::milliseconds{420};
 
 /// From which start a case reaches a state by `enter`.
-[[nodiscard]] constexpr Start start_for(State state) noexcept {
+[[nodiscard]] constexpr Start start_for(emulation::State state) noexcept {
   switch (state) {
-    case State::kEmergencyStopped:
+    case emulation::State::kEmergencyStopped:
       return kStopped;
-    case State::kPoweredOff:
+    case emulation::State::kPoweredOff:
       return kOff;
-    case State::kSteering:
+    case emulation::State::kSteering:
       return kSteering;
-    case State::kInitializing:
-    case State::kRetracted:
-    case State::kUnfolding:
+    case emulation::State::kInitializing:
+    case emulation::State::kRetracted:
+    case emulation::State::kUnfolding:
       return kFolded;
     default:
       return kReady;
   }
 }
 
-[[nodiscard]] constexpr Hazard hazard_of(State state) noexcept {
-  if (state == State::kEmergencyStopped) return Hazard::kObserve;
-  return state == State::kPoweredOff ? Hazard::kState : Hazard::kMove;
+[[nodiscard]] constexpr Hazard hazard_of(emulation::State state) noexcept {
+  if (state == emulation::State::kEmergencyStopped) return Hazard::kObserve;
+  return state == emulation::State::kPoweredOff ? Hazard::kState : Hazard::kMove;
 }
 
 /// The beat of a state that was not entered anew from idle.
-[[nodiscard]] int beat_of(State state) noexcept;
+[[nodiscard]] int beat_of(emulation::State state) noexcept;
 
 /// Goes to the state from its start. A beat comes soon behind.
-void enter(ServerBench& server, State state);
+void enter(ServerBench& server, emulation::State state);
 
 /// From retracted to poweredOff; the arm stays folded, so that initializing takes its time.
 void switch_off(ServerBench& server);
 
 /// A case that begins where its state can be entered; with motion it is not quick.
-[[nodiscard]] constexpr Case in(State state, std::string_view requirement, std::string_view rule,
-                                void (*run)(Bench&), std::string_view variant = {}) noexcept {
-  return {.requirement = requirement,
-          .variant = variant,
-          .rule = rule,
-          .run = run,
-          .hazard = hazard_of(state),
-          .tier = hazard_of(state) == Hazard::kMove ? Tier::kFull : Tier::kQuick,
-          .start = start_for(state)};
+[[nodiscard]] constexpr Case in(emulation::State state, std::string_view requirement,
+                                std::string_view rule, void (*run)(Bench&),
+                                std::string_view variant = {}) noexcept {
+  const auto one = from(start_for(state), hazard_of(state), requirement, rule, run, variant);
+  return one.hazard == Hazard::kMove ? full(one) : one;
 }
 
 /// One that is worth its time in quick runs, too.
@@ -66,4 +62,4 @@ void switch_off(ServerBench& server);
   return one;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

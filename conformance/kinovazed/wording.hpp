@@ -7,16 +7,13 @@
 
 #include "conformance/kinovazed/server_bench.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 
 /// Expects a time to be within bounds. What the link itself may add is up to the caller.
 inline void expect_time(ServerBench& server, Duration time, Duration least, Duration most) {
-  const auto milliseconds = [](Duration duration) {
-    return std::chrono::duration<double, std::milli>(duration).count();
-  };
   server.expect_true(time >= least && time <= most,
                      fmt::format("{:.0f} to {:.0f} ms", milliseconds(least), milliseconds(most)),
                      fmt::format("{:.1f} ms", milliseconds(time)));
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

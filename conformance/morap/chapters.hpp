@@ -6,7 +6,7 @@
 #include "conformance/suite.hpp"
 
 /// The chapters of the MORAP suite: requirements in catalogue/, cases in cases/.
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 
 [[nodiscard]] std::span<const Requirement> bus_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> reading_requirements() noexcept;
@@ -19,6 +19,7 @@ namespace armjig::morap {
 [[nodiscard]] std::span<const Requirement> motion_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> documented_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> pen_requirements() noexcept;
+/// Of programs.
 
 [[nodiscard]] std::span<const Case> bus_cases() noexcept;
 [[nodiscard]] std::span<const Case> reading_cases() noexcept;
@@ -31,4 +32,4 @@ namespace armjig::morap {
 [[nodiscard]] std::span<const Case> motion_cases() noexcept;
 [[nodiscard]] std::span<const Case> documented_cases() noexcept;
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -7,7 +7,7 @@
 
 #include "emulators/morap/eeprom.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 
 /// What a tuning request gives, as it is read back behind a tick.
 struct Tuned {
@@ -18,7 +18,7 @@ struct Tuned {
 /// A motor that is known, in the bytes that its nodes say. From docs/spec/morap.md.
 struct Motor {
   std::string_view name;
-  Eeprom (*eeprom)(std::uint8_t node);
+  emulation::Eeprom (*eeprom)(std::uint8_t node);
   std::string_view position_set;     ///< stored
   std::string_view speed_set;        ///< stored
   std::string_view one_radian;       ///< the angle behind a calibration to 1 rad
@@ -31,4 +31,4 @@ struct Motor {
 
 [[nodiscard]] std::span<const Motor> motors() noexcept;
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

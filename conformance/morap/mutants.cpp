@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/morap/mutants.hpp"
-
 #include <array>
 
+#include "conformance/morap/suite.hpp"
 #include "emulators/morap/defects/defects.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
 constexpr auto kEquivalents = std::to_array<EquivalentFault>({
@@ -40,6 +39,8 @@ constexpr std::array kHints{
 
 }  // namespace
 
-MutantsEntry mutants_entry() noexcept { return {"morap", all_faults, kEquivalents, kHints}; }
+MutantsEntry mutants_entry() noexcept {
+  return {"morap", emulation::all_faults, kEquivalents, kHints};
+}
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -10,10 +10,12 @@
 
 #include "emulators/morap/control.hpp"
 #include "harness/core/hex.hpp"
+#include "harness/wire/morap/dissector.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 using enum CommandId;
 
@@ -23,8 +25,11 @@ constexpr Duration kMargin = 20us;
 
 std::vector<std::byte> bytes_of(std::string_view hex) { return *from_hex(hex); }
 
-const DissectorEntry& dissector_entry() {
-  return *std::ranges::find(dissectors(), "morap", &DissectorEntry::device);
+/// As the document has numbers, IEEE 754 with the low byte first; not as our codec has them.
+std::array<std::byte, 4> bytes_of(float value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return {static_cast<std::byte>(bits), static_cast<std::byte>(bits >> 8U),
+          static_cast<std::byte>(bits >> 16U), static_cast<std::byte>(bits >> 24U)};
 }
 
 std::string name_of_selector(CommandId selector) {
@@ -34,19 +39,10 @@ std::string name_of_selector(CommandId selector) {
 
 }  // namespace
 
-NodeBench::NodeBench(BusRig rig, const Subject& subject)
-    : BusBench{std::move(rig), dissector_entry()}, subject_{subject} {}
+NodeBench::NodeBench(Rig<BusPort> rig, const Subject& subject)
+    : BusBench{std::move(rig), make_dissector()}, subject_{subject} {}
 
 NodeBench::~NodeBench() { put_sets_back(); }
-
-void NodeBench::forget_exchange() {
-  BusBench::forget_exchange();
-  about_.clear();
-}
-
-std::string NodeBench::behind(std::string text) const {
-  return about_.empty() ? text : fmt::format("{} ({})", text, about_);
-}
 
 // ---- Writing and reading
 
@@ -105,9 +101,10 @@ void NodeBench::expect_read_on(std::string_view hex) {
 }
 
 void NodeBench::expect_number(CommandId selector, float wanted) {
-  const auto actual = number(selector);
-  if (std::bit_cast<std::uint32_t>(actual) == std::bit_cast<std::uint32_t>(wanted)) return;
-  fail(behind(fmt::format("{} {}", name_of_selector(selector), wanted)), fmt::format("{}", actual));
+  const auto actual = read(selector, 4);
+  if (std::ranges::equal(actual, bytes_of(wanted))) return;
+  fail(behind(fmt::format("{} {}", name_of_selector(selector), wanted)),
+       fmt::format("{}", decode_float(slice<4>(Bytes{actual}, 0))));
 }
 
 void NodeBench::expect_near(CommandId selector, double wanted, double tolerance) {
@@ -117,21 +114,18 @@ void NodeBench::expect_near(CommandId selector, double wanted, double tolerance)
        fmt::format("{}", actual));
 }
 
+void NodeBench::expect_state(CommandId selector, std::string_view name, int wanted) {
+  const auto actual = std::to_integer<int>(read(selector, 1)[0]);
+  if (actual == wanted) return;
+  fail(behind(fmt::format("{} {}", name, wanted)), fmt::format("{}", actual));
+}
+
 void NodeBench::expect_status(MotorStatus wanted) {
-  const auto actual = std::to_integer<int>(read(kReadMotorStatus, 1)[0]);
-  if (actual == static_cast<int>(wanted)) return;
-  fail(behind(fmt::format("motor status {}", static_cast<int>(wanted))), fmt::format("{}", actual));
+  expect_state(kReadMotorStatus, "motor status", static_cast<int>(wanted));
 }
 
 void NodeBench::expect_programming(ProgrammingStatus wanted) {
-  const auto actual = std::to_integer<int>(read(kReadProgrammingStatus, 1)[0]);
-  if (actual == static_cast<int>(wanted)) return;
-  fail(behind(fmt::format("programming status {}", static_cast<int>(wanted))),
-       fmt::format("{}", actual));
-}
-
-void NodeBench::expect_true(bool is_so, std::string_view wanted, std::string_view otherwise) {
-  if (!is_so) fail(behind(std::string{wanted}), std::string{otherwise});
+  expect_state(kReadProgrammingStatus, "programming status", static_cast<int>(wanted));
 }
 
 void NodeBench::expect_absent(BusAddress address) {
@@ -144,7 +138,7 @@ void NodeBench::expect_absent(BusAddress address) {
 
 // ---- Time
 
-void NodeBench::settle() { pause(12ms + noise_); }
+void NodeBench::settle() { pause(12ms + noise()); }
 
 void NodeBench::tick(std::uint16_t rate_hz) {
   if (is_deaf()) return;
@@ -159,13 +153,12 @@ void NodeBench::wait_for_tick() {
 }
 
 void NodeBench::expect_read_levels(int levels) {
-  const auto bytes = encode(static_cast<float>(levels) * 0.046875F);
-  expect_same(read_on(bytes.size()), bytes);
+  expect_same(read_on(4), bytes_of(static_cast<float>(levels) * 0.046875F));
 }
 
 void NodeBench::expect_levels_at_ticks(std::initializer_list<int> levels) {
   int number = 0;
-  const auto what = about_;
+  const auto what = subject();
   for (const auto level : levels) {
     tick();
     about(fmt::format("{}{}tick {}", what, what.empty() ? "" : ", ", ++number));
@@ -196,7 +189,7 @@ void NodeBench::measure_noise() {
   for (int i = 0; i < kSamples && !error(); ++i) {
     const auto asked = now();
     std::ignore = BusBench::read(subject_.address, 1);
-    noise_ = std::max<Duration>(noise_, now() - asked - kAlone);
+    hear_noise(now() - asked - kAlone);
   }
   find_motor();
 }
@@ -265,8 +258,8 @@ void NodeBench::keep_sets() {
   for (std::size_t i = 0; i < kSelectors.size(); ++i) {
     const auto bytes = read(kSelectors[i], kLargestSetSize);
     if (const auto set = decode_set(bytes); std::holds_alternative<ControllerSet>(set)) {
-      const auto encoded = encode(std::get<ControllerSet>(set));
-      kept_sets_[i].assign(encoded.view().begin(), encoded.view().end());
+      const auto size = encode(std::get<ControllerSet>(set)).view().size();
+      kept_sets_[i].assign(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     }
   }
 }
@@ -284,4 +277,4 @@ void NodeBench::put_sets_back() {
   }
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

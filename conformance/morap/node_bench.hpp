@@ -11,10 +11,9 @@
 
 #include "conformance/bus_bench.hpp"
 #include "conformance/morap/motors.hpp"
-#include "conformance/stream_bench.hpp"
 #include "harness/wire/morap/message.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 
 /// The states in which cases begin, as indices into the suite's `starts`.
 enum Start : std::uint8_t {
@@ -34,7 +33,7 @@ class NodeBench final : public BusBench {
     const Motor* motor = nullptr;  ///< none: it is found out, if it is a known one
     bool is_real = false;          ///< the first of its bus that answers; its shaft turns
   };
-  NodeBench(BusRig rig, const Subject& subject);
+  NodeBench(Rig<BusPort> rig, const Subject& subject);
   NodeBench(const NodeBench&) = delete;
   NodeBench& operator=(const NodeBench&) = delete;
   ~NodeBench() override;
@@ -42,10 +41,6 @@ class NodeBench final : public BusBench {
   [[nodiscard]] bool is_alive() override;
   void bring_to(std::size_t start) override;
   void measure_noise() override;
-  [[nodiscard]] Duration noise() const override { return noise_; }
-
-  /// What comes next is about this: it stands behind every expectation until it is said anew.
-  void about(std::string what) { about_ = std::move(what); }
 
   // Writing. A byte without acknowledgement is a finding.
   void send(const Command& command);
@@ -74,7 +69,6 @@ class NodeBench final : public BusBench {
   void expect_levels(int levels) { expect_volts(static_cast<float>(levels) * 0.046875F); }
   void expect_status(MotorStatus wanted);
   void expect_programming(ProgrammingStatus wanted);
-  void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
   void expect_absent(BusAddress address);
 
   // Time.
@@ -100,11 +94,8 @@ class NodeBench final : public BusBench {
   /// Only where nothing can be damaged: on an emulated node.
   void needs_emulation() { touch("adc", 0); }
 
- protected:
-  void forget_exchange() override;
-
  private:
-  [[nodiscard]] std::string behind(std::string text) const;
+  void expect_state(CommandId selector, std::string_view name, int wanted);
   void find_node();
   void find_motor();
   void keep_sets();
@@ -116,12 +107,10 @@ class NodeBench final : public BusBench {
   void power_up(std::int64_t shaft);
 
   Subject subject_;
-  std::string about_;
-  Duration noise_{};
   bool is_found_ = false;
   std::array<std::vector<std::byte>, 2> kept_sets_;  ///< as they were before the first case
   Instant next_tick_{};
   std::uint16_t rate_hz_ = 0;
 };
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

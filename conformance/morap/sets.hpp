@@ -8,7 +8,7 @@
 #include "harness/wire/morap/controller_set.hpp"
 
 /// Controllers that are easy to reckon with.
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 
 inline Coefficients filter(std::initializer_list<float> values) {
   Coefficients filter{static_cast<std::uint8_t>(values.size())};
@@ -22,4 +22,4 @@ inline ControllerSet proportional(std::uint16_t rate_hz, float gain,
   return {kind, rate_hz, filter({0.0F}), filter({gain}), filter({0.0F}), 0.0F};
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -4,10 +4,9 @@
 #include <array>
 
 #include "conformance/morap/chapters.hpp"
-#include "conformance/morap/host/checker.hpp"
-#include "conformance/morap/target.hpp"
+#include "conformance/morap/host/check.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
 constexpr std::array kStarts{
@@ -34,9 +33,9 @@ Suite suite() noexcept {
       Chapter{"A free shaft", motion_requirements(), motion_cases()},
       Chapter{"Where the document differs", documented_requirements(), documented_cases()},
       Chapter{"Pen", pen_requirements(), {}},
-      Chapter{"Masters", host_requirements(), {}},
+      Chapter{"Masters", programs::host_requirements(), {}},
   };
-  return {"morap", "0.2", kChapters, kStarts, open_node};
+  return {"morap", "0.2", kChapters, kStarts};
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

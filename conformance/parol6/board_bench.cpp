@@ -12,7 +12,7 @@
 #include "harness/wire/parol6/fields.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
 using namespace std::chrono_literals;
@@ -20,16 +20,8 @@ using namespace std::chrono_literals;
 /// Homing takes 31 s where the switches are near.
 constexpr Duration kHomingTime = 90s;
 
-std::int64_t value_of(const Field& field, const TelemetryFrame& frame) {
-  return field_value(field, encode(frame));
-}
-
 const Field& telemetry_field(std::string_view name) {
   return *find_field(telemetry_fields(), name);
-}
-
-double milliseconds(Duration time) {
-  return std::chrono::duration<double, std::milli>(time).count();
 }
 
 }  // namespace
@@ -42,12 +34,14 @@ CommandFrame with_code(int code) {
 
 CommandFrame idle() { return with_code(255); }
 
-CommandFrame jog(const Speeds& speeds) {
-  auto frame = with_code(123);
+CommandFrame with_speeds(int code, const Speeds& speeds) {
+  auto frame = with_code(code);
   std::ranges::transform(speeds, frame.speed.begin(),
                          [](int speed) { return StepsPerSecond{speed}; });
   return frame;
 }
+
+CommandFrame jog(const Speeds& speeds) { return with_speeds(123, speeds); }
 
 CommandFrame jog(std::size_t joint, int speed) {
   Speeds speeds{};
@@ -56,8 +50,7 @@ CommandFrame jog(std::size_t joint, int speed) {
 }
 
 CommandFrame go_to(const std::array<Steps, kJointCount>& positions, const Speeds& speeds) {
-  auto frame = jog(speeds);
-  frame.command = Command::kGoTo;
+  auto frame = with_speeds(156, speeds);
   frame.position = positions;
   return frame;
 }
@@ -68,31 +61,18 @@ CommandFrame with_gripper(const GripperSetPoint& set_point) {
   return frame;
 }
 
-BoardBench::BoardBench(Rig rig)
-    : StreamBench{std::move(rig),
-                  *std::ranges::find(dissectors(), "parol6", &DissectorEntry::device)} {}
+BoardBench::BoardBench(Rig<StreamPort> rig) : StreamBench{std::move(rig), make_dissector()} {}
 
-void BoardBench::forget_exchange() {
-  StreamBench::forget_exchange();
-  about_.clear();
-}
-
-Duration BoardBench::answer_time() const { return std::max<Duration>(1s, 20 * noise_); }
-Duration BoardBench::silence_time() const { return std::max<Duration>(50ms, 5 * noise_); }
+Duration BoardBench::answer_time() const { return std::max<Duration>(1s, 20 * noise()); }
+Duration BoardBench::silence_time() const { return std::max<Duration>(50ms, 5 * noise()); }
 
 std::optional<Answer> BoardBench::next_answer(Instant asked, Duration within) {
   const auto message = receive(within);
   if (!message || !message->fault.empty()) return std::nullopt;
-  Answer answer;
-  static_cast<TelemetryFrame&>(answer) =
-      decode_telemetry(body_of(Bytes{message->raw}.first<kTelemetryFrameSize>()));
-  answer.asked = asked;
-  answer.received = message->time;
+  const auto raw = Bytes{message->raw}.first<kTelemetryFrameSize>();
+  Answer answer{{decode_telemetry(body_of(raw))}, {}, asked, message->time};
+  std::ranges::copy(raw, answer.raw.begin());
   return answer;
-}
-
-std::string BoardBench::behind(std::string text) const {
-  return about_.empty() ? text : fmt::format("{} ({})", text, about_);
 }
 
 /// Not sooner than a millisecond behind the answer before: the board writes its CAN frames to one
@@ -151,6 +131,13 @@ void BoardBench::expect_silence() {
   if (message) fail(behind("no answer"), to_hex_dump(message->raw));
 }
 
+void BoardBench::expect_whole() {
+  send(encode(idle()));
+  const auto message = receive(answer_time());
+  if (!message) return fail_by_silence("a telemetry frame", "silence");
+  if (!message->fault.empty()) fail("60 bytes FF FF FF 38 ... 01 02", message->fault);
+}
+
 void BoardBench::expect_recovery(int most) {
   for (int i = 0; i < most && !is_over() && !error(); ++i) {
     send(encode(idle()));
@@ -165,35 +152,30 @@ void BoardBench::expect_recovery(int most) {
   fail(behind(fmt::format("an answer within {} good frames", most)), "silence");
 }
 
-void BoardBench::expect(const TelemetryFrame& answer, std::string_view field, std::int64_t wanted) {
+void BoardBench::expect(const Answer& answer, std::string_view field, std::int64_t wanted) {
   expect_between(answer, field, wanted, wanted);
 }
 
-void BoardBench::expect_bits(const TelemetryFrame& answer, std::string_view field,
-                             std::uint8_t mask, std::uint8_t wanted) {
-  const auto value = value_of(telemetry_field(field), answer);
+void BoardBench::expect_bits(const Answer& answer, std::string_view field, std::uint8_t mask,
+                             std::uint8_t wanted) {
+  const auto value = field_value(telemetry_field(field), answer.raw);
   expect(answer, field, (value & ~std::int64_t{mask}) | wanted);
 }
 
-void BoardBench::expect_same(const TelemetryFrame& answer, std::string_view field,
-                             const TelemetryFrame& before) {
-  expect(answer, field, value_of(telemetry_field(field), before));
+void BoardBench::expect_same(const Answer& answer, std::string_view field, const Answer& before) {
+  expect(answer, field, field_value(telemetry_field(field), before.raw));
 }
 
-void BoardBench::expect_between(const TelemetryFrame& answer, std::string_view name,
-                                std::int64_t least, std::int64_t most) {
+void BoardBench::expect_between(const Answer& answer, std::string_view name, std::int64_t least,
+                                std::int64_t most) {
   if (is_over()) return;
   const auto& field = telemetry_field(name);
-  const auto value = value_of(field, answer);
+  const auto value = field_value(field, answer.raw);
   if (value >= least && value <= most) return;
   const auto wanted = least == most ? field_text(field, least)
                                     : fmt::format("{} to {}", least, field_text(field, most));
   fail(behind(fmt::format("{} = {}", name, wanted)),
        fmt::format("{} = {}", name, field_text(field, value)));
-}
-
-void BoardBench::expect_true(bool is_so, std::string_view wanted, std::string_view otherwise) {
-  if (!is_so) fail(behind(std::string{wanted}), std::string{otherwise});
 }
 
 /// Asks until the board answers, for it may wait for the rest of what it took for a long frame.
@@ -216,7 +198,7 @@ void BoardBench::measure_noise() {
     const auto asked = now();
     send(encode(idle()));
     if (const auto answer = next_answer(asked, answer_time())) {
-      noise_ = std::max(noise_, answer->received - asked);
+      hear_noise(answer->received - asked);
     }
   }
 }
@@ -337,4 +319,4 @@ void BoardBench::walk_to_standby() {
   act(idle());
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

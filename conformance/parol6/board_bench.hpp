@@ -12,7 +12,7 @@
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 
 /// The states in which cases begin, as indices into the suite's `starts`.
 enum Start : std::uint8_t {
@@ -27,8 +27,10 @@ enum Start : std::uint8_t {
 inline constexpr std::array<Steps, kJointCount> kStandby{Steps{10240}, Steps{-32000}, Steps{57905},
                                                          Steps{0},     Steps{0},      Steps{32000}};
 
-/// A telemetry frame and when it came. The board made it between `asked` and `received`.
+/// A telemetry frame and when it came. The board made it between `asked` and `received`. Fields are
+/// judged by the bytes that came.
 struct Answer : TelemetryFrame {
+  TelemetryBytes raw{};
   Instant asked{};     ///< when the last byte of the frame that it answers was handed over
   Instant received{};  ///< when its own last byte had come
 };
@@ -37,6 +39,7 @@ struct Answer : TelemetryFrame {
 [[nodiscard]] CommandFrame with_code(int code);
 [[nodiscard]] CommandFrame idle();
 using Speeds = std::array<int, kJointCount>;  ///< steps/s
+[[nodiscard]] CommandFrame with_speeds(int code, const Speeds& speeds);
 [[nodiscard]] CommandFrame jog(const Speeds& speeds);
 [[nodiscard]] CommandFrame jog(std::size_t joint, int speed);
 /// Positions are absolute counts.
@@ -49,12 +52,11 @@ using Speeds = std::array<int, kJointCount>;  ///< steps/s
 /// A conversation with a PAROL6 board, in the words of its protocol.
 class BoardBench final : public StreamBench {
  public:
-  explicit BoardBench(Rig rig);
+  explicit BoardBench(Rig<StreamPort> rig);
 
   [[nodiscard]] bool is_alive() override;
   void bring_to(std::size_t start) override;
   void measure_noise() override;
-  [[nodiscard]] Duration noise() const override { return noise_; }
 
   /// Sends a frame and takes its answer. None in time is a silence (`Bench::fail_by_silence`).
   Answer ask(const CommandFrame& frame) { return ask(frame, answer_time()); }
@@ -79,26 +81,31 @@ class BoardBench final : public StreamBench {
     return std::nullopt;
   }
 
-  /// What comes next is about this: it stands behind every expectation until it is said anew.
-  void about(std::string what) { about_ = std::move(what); }
-
   /// Expects one answer to what was sent, now.
   Answer expect_answer();
+  Answer expect_answer(Bytes sent) {
+    send(sent);
+    return expect_answer();
+  }
   /// Expects none.
   void expect_silence();
+  void expect_silence(Bytes sent) {
+    send(sent);
+    expect_silence();
+  }
+  /// Expects the answer to an idle frame to be whole, whatever it says.
+  void expect_whole();
   /// Sends idle frames until one is answered, at most `most`; behind `about`.
   void expect_recovery(int most);
 
   /// Expects a field of telemetry, by its name in docs/spec, to have a value.
-  void expect(const TelemetryFrame& answer, std::string_view field, std::int64_t wanted);
+  void expect(const Answer& answer, std::string_view field, std::int64_t wanted);
   /// Expects some bits of a flag field.
-  void expect_bits(const TelemetryFrame& answer, std::string_view field, std::uint8_t mask,
+  void expect_bits(const Answer& answer, std::string_view field, std::uint8_t mask,
                    std::uint8_t wanted);
-  void expect_between(const TelemetryFrame& answer, std::string_view field, std::int64_t least,
+  void expect_between(const Answer& answer, std::string_view field, std::int64_t least,
                       std::int64_t most);
-  void expect_same(const TelemetryFrame& answer, std::string_view field,
-                   const TelemetryFrame& before);
-  void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
+  void expect_same(const Answer& answer, std::string_view field, const Answer& before);
 
   /// All answers of the last whole run of homing, 10 ms apart or less, the first one from before.
   [[nodiscard]] const std::vector<Answer>& homing_log() const noexcept { return homing_log_; }
@@ -116,9 +123,6 @@ class BoardBench final : public StreamBench {
   /// Longer than two passes of any board's loop.
   static constexpr Duration kPassTime = std::chrono::milliseconds{2};
 
- protected:
-  void forget_exchange() override;
-
  private:
   [[nodiscard]] std::optional<Answer> next_answer(Instant asked, Duration within);
   void power_cycle();
@@ -128,14 +132,11 @@ class BoardBench final : public StreamBench {
   void leave_switch();
   void home();
   void walk_to_standby();
-  [[nodiscard]] std::string behind(std::string text) const;
 
-  std::string about_;
   std::vector<Answer> homing_log_;
   std::optional<std::array<Steps, kJointCount>> origin_;  ///< where `kEnabled` cases begin
   Instant last_answered_{};
-  Duration noise_{};
   bool is_spoiled_ = false;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

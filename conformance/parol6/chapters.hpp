@@ -6,7 +6,7 @@
 #include "conformance/suite.hpp"
 
 /// The chapters of the PAROL6 suite: requirements in catalogue/, cases in cases/.
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 
 [[nodiscard]] std::span<const Requirement> frame_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> receive_requirements() noexcept;
@@ -19,6 +19,7 @@ namespace armjig::parol6 {
 [[nodiscard]] std::span<const Requirement> home_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> demo_requirements() noexcept;
 [[nodiscard]] std::span<const Requirement> gripper_requirements() noexcept;
+/// Of programs.
 
 [[nodiscard]] std::span<const Case> frame_cases() noexcept;
 [[nodiscard]] std::span<const Case> receive_cases() noexcept;
@@ -33,4 +34,4 @@ namespace armjig::parol6 {
 [[nodiscard]] std::span<const Case> gripper_cases() noexcept;
 [[nodiscard]] std::span<const Case> between_cases() noexcept;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 
 std::vector<Answer> HomingRecord::with_bits(std::uint8_t homed) const {
   std::vector<Answer> answers;
@@ -29,4 +29,4 @@ std::vector<std::uint8_t> HomingRecord::bits() const {
   return bits;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -7,7 +7,7 @@
 
 #include "conformance/parol6/board_bench.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 
 /// What telemetry showed of a whole run of homing, cut at changes of the homed bits.
 class HomingRecord {
@@ -36,4 +36,4 @@ inline constexpr std::uint8_t kFirstThreeHomed = 0xE3;
 inline constexpr std::uint8_t kFirstFourHomed = 0xF3;
 inline constexpr std::uint8_t kAllHomed = 0xFF;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
 constexpr double kClockError = 0.02;  // RC oscillator: 1 %, and a margin
@@ -68,7 +68,7 @@ void expect_moved(BoardBench& board, const Stretch& stretch) {
   board.expect_true(has_moved, "motion", "all joints stand still");
 }
 
-void expect_reported(BoardBench& board, const TelemetryFrame& answer, const Speeds& speeds) {
+void expect_reported(BoardBench& board, const Answer& answer, const Speeds& speeds) {
   for (std::size_t j = 0; j < kJointCount; ++j) board.expect(answer, speed_field(j), speeds[j]);
 }
 
@@ -83,4 +83,4 @@ std::array<Steps, kJointCount> beside(const TelemetryFrame& answer, std::size_t 
   return positions;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

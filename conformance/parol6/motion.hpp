@@ -8,7 +8,7 @@
 #include "harness/core/time.hpp"
 
 /// What cases say about joints that move or stand.
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 
 /// The first and the last answer of a stretch of time in which a command acted.
 struct Stretch {
@@ -34,7 +34,7 @@ void expect_still(BoardBench& board, const Stretch& stretch);
 void expect_moved(BoardBench& board, const Stretch& stretch);
 
 /// Expects the speeds that telemetry reports.
-void expect_reported(BoardBench& board, const TelemetryFrame& answer, const Speeds& speeds);
+void expect_reported(BoardBench& board, const Answer& answer, const Speeds& speeds);
 
 /// `speed.j1` and the like.
 [[nodiscard]] std::string speed_field(std::size_t joint);
@@ -48,4 +48,4 @@ void begin_homing(BoardBench& board, Duration time);
 [[nodiscard]] std::array<Steps, kJointCount> beside(const TelemetryFrame& answer, std::size_t joint,
                                                     int steps);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

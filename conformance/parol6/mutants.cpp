@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/parol6/mutants.hpp"
-
 #include <array>
 
+#include "conformance/parol6/suite.hpp"
 #include "emulators/parol6/defects/defects.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
 constexpr std::string_view kConstant = "the byte never changes";
@@ -127,6 +126,8 @@ constexpr std::array kHints{
 
 }  // namespace
 
-MutantsEntry mutants_entry() noexcept { return {"parol6", all_faults, kEquivalents, kHints}; }
+MutantsEntry mutants_entry() noexcept {
+  return {"parol6", emulation::all_faults, kEquivalents, kHints};
+}
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

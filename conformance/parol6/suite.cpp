@@ -6,10 +6,9 @@
 
 #include "conformance/parol6/board_bench.hpp"
 #include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/host/checker.hpp"
-#include "emulators/host/devices.hpp"
+#include "conformance/parol6/host/check.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
 constexpr std::array kStarts{
@@ -18,12 +17,6 @@ constexpr std::array kStarts{
     StartState{"homed", Hazard::kHome},
     StartState{"enabled", Hazard::kState},
 };
-
-Outcome<std::unique_ptr<Bench>> open(const RigOptions& how) {
-  auto rig = Rig::open("parol6", how, hosted_device("parol6").open);
-  if (!rig) return tl::unexpected{rig.error()};
-  return std::make_unique<BoardBench>(*std::move(rig));
-}
 
 }  // namespace
 
@@ -41,9 +34,13 @@ Suite suite() noexcept {
       Chapter{"Demonstration", demo_requirements(), demo_cases()},
       Chapter{"Gripper", gripper_requirements(), gripper_cases()},
       Chapter{"Between the chapters", {}, between_cases()},
-      Chapter{"Host programs", host_requirements(), {}},
+      Chapter{"Host programs", programs::host_requirements(), {}},
   };
-  return {"parol6", "0.3", kChapters, kStarts, open};
+  return {"parol6", "0.3", kChapters, kStarts};
 }
 
-}  // namespace armjig::parol6
+Outcome<std::unique_ptr<Bench>> make_bench(Rig<StreamPort> rig, const RigOptions& /*how*/) {
+  return std::make_unique<BoardBench>(std::move(rig));
+}
+
+}  // namespace armjig::parol6::conformance

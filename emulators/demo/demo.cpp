@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace armjig::demo {
+namespace armjig::demo::emulation {
 namespace {
 
 struct Row {
@@ -94,4 +94,4 @@ bool BusDevice::write(Instant /*time*/, std::byte byte) noexcept {
 
 std::byte BusDevice::read(Instant /*time*/) noexcept { return answer_; }
 
-}  // namespace armjig::demo
+}  // namespace armjig::demo::emulation

@@ -13,7 +13,7 @@
 #include "harness/wire/demo/demo.hpp"
 
 /// The demo device behind each of the three links. One machine, three thin ways in.
-namespace armjig::demo {
+namespace armjig::demo::emulation {
 
 /// What the device does with one operation.
 class Machine {
@@ -80,4 +80,4 @@ class BusDevice {
   std::byte answer_{};
 };
 
-}  // namespace armjig::demo
+}  // namespace armjig::demo::emulation

@@ -53,6 +53,11 @@ class Faulty {
   {
     return device_.set_input(time, input, value);
   }
+  [[nodiscard]] static auto inputs() noexcept
+    requires requires { Device::inputs(); }
+  {
+    return Device::inputs();
+  }
 
  private:
   static constexpr int kOneIn = 10;

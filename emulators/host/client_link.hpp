@@ -27,15 +27,23 @@ struct LinkStatistics {
   std::uint64_t bytes_out = 0;       ///< to clients
   std::uint64_t frames_dropped = 0;  ///< because no client was there or it did not read
 
+  LinkStatistics& operator+=(const LinkStatistics& other) noexcept {
+    clients += other.clients;
+    refused += other.refused;
+    bytes_in += other.bytes_in;
+    bytes_out += other.bytes_out;
+    frames_dropped += other.frames_dropped;
+    return *this;
+  }
   friend bool operator==(const LinkStatistics&, const LinkStatistics&) = default;
 };
 
-/// A place where one client at a time finds the device. Reads at most `kTurn` bytes before others
-/// have their turn, and never waits for a client.
+/// So much is read before others have their turn.
+inline constexpr std::size_t kReadTurn = 16'384;
+
+/// A place where one client at a time finds the device. Never waits for a client.
 class ClientLink {
  public:
-  static constexpr std::size_t kTurn = 4096;
-
   ClientLink() = default;
   ClientLink(const ClientLink&) = delete;
   ClientLink& operator=(const ClientLink&) = delete;
@@ -43,15 +51,18 @@ class ClientLink {
 
   /// Hands a whole message to the client, now or when it reads again, or drops it.
   virtual void send(Bytes message) = 0;
+  /// Goes on reading, after `LinkEvents::wants_bytes` has said no.
+  virtual void read_on() = 0;
 
   /// The places as `--target` takes them, the stable one last.
   [[nodiscard]] virtual std::vector<std::string> targets() const = 0;
   [[nodiscard]] virtual LinkStatistics statistics() const = 0;
 };
 
-/// What a link tells. The bytes are valid during the call.
+/// What a link tells and asks. The bytes are valid during the call.
 struct LinkEvents {
   std::function<void(ClientLink& from, Bytes bytes)> on_bytes;
+  std::function<bool()> wants_bytes;
   std::function<void(std::string_view line)> on_log;
 };
 
@@ -71,8 +82,8 @@ struct TcpOptions {
 };
 
 /// Listens on TCP for one client at a time; a second one is closed at once. A client that only
-/// ended its sending still gets answers for a second, if no other comes. Problems: `kBadValue` (not
-/// an address), `kBusy`, `kNoPermission`, `kNotFound` (not an address of this machine), `kSystem`.
+/// ended its sending still gets answers for a second, if no other comes. Problems: those of
+/// `listen_on_tcp`.
 [[nodiscard]] Outcome<std::unique_ptr<ClientLink>> open_tcp_link(boost::asio::io_context& context,
                                                                  const TcpOptions& options,
                                                                  LinkEvents events);

@@ -8,7 +8,10 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <csignal>
+#include <future>
+#include <thread>
 
+#include "emulators/host/loop.hpp"
 #include "emulators/host/paced_clock.hpp"
 
 namespace armjig {
@@ -30,31 +33,30 @@ constexpr auto kShortWait = 50us;
 
 }  // namespace
 
-/// The device, its clock and its links on one io_context.
-class Host::Loop {
+/// The device, its clock and what is in front of it on one io_context.
+class Host::LoopOnAsio final : public Loop {
  public:
-  Loop(std::unique_ptr<HostedStream> device, const HostOptions& options)
-      : device_{std::move(device)},
-        clock_{options.speed, Wall::now()},
+  LoopOnAsio(AnyHosted device, HostOptions options)
+      : options_{std::move(options)},
+        hosted_{std::move(device)},
+        device_{std::visit([](auto& kind) -> HostedDevice& { return *kind; }, hosted_)},
+        front_{std::visit([this](auto& kind) { return make_front(*this, *kind); }, hosted_)},
+        reached_{front_->begin()},
+        clock_{options_.speed, Wall::now(), reached_},
         timer_{context_},
         signals_{context_} {
-    if (options.on_signal == HostOptions::OnSignal::kStop) {
-      signals_.add(SIGINT);
-      signals_.add(SIGTERM);
-      signals_.async_wait([this](const error_code& error, int) {
-        if (!error) stop();
-      });
-    }
-    pump();
+    if (options_.on_signal == HostOptions::OnSignal::kNothing) return;
+    signals_.add(SIGINT);
+    signals_.add(SIGTERM);
+    signals_.async_wait([this](const error_code& error, int) {
+      if (!error) stop();
+    });
   }
 
-  [[nodiscard]] Outcome<void> listen(const HostOptions& options) {
-    if (options.pty) {
-      auto added = add(open_pty_link(context_, *options.pty, events(options)));
-      if (!added) return added;
-    }
-    if (options.tcp) return add(open_tcp_link(context_, *options.tcp, events(options)));
-    return {};
+  [[nodiscard]] Outcome<void> listen() {
+    auto listening = front_->listen(options_);
+    if (listening) pump();
+    return listening;
   }
 
   void run() { context_.run(); }
@@ -62,84 +64,62 @@ class Host::Loop {
 
   void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell) {
     boost::asio::post(context_, [this, name = std::move(name), value, tell = std::move(tell)] {
-      catch_up();
-      tell(device_->set_input(reached_, name, value));
+      tell(device_.set_input(catch_up(), name, value));
       pump();
     });
   }
 
-  [[nodiscard]] std::vector<std::string> targets() const {
-    std::vector<std::string> all;
-    for (const auto& link : links_) {
-      for (auto& target : link->targets()) all.push_back(std::move(target));
-    }
-    return all;
+  void with_bus(const std::function<void(BusPort& bus)>& use) {
+    std::promise<Wall::time_point> end;
+    boost::asio::post(context_, [this, &use, &end] {
+      auto& bus = *front_->bus();
+      bus.wait_until(catch_up());
+      use(bus);
+      reach(bus.now());
+      pump();
+      end.set_value(clock_.wall_time(bus.now(), Wall::now()));
+    });
+    std::this_thread::sleep_until(end.get_future().get());
   }
 
+  [[nodiscard]] std::vector<std::string> targets() const { return front_->targets(); }
   [[nodiscard]] HostStatistics statistics() const {
-    HostStatistics sum{.links = {}, .lost = clock_.lost()};
-    for (const auto& link : links_) {
-      const auto part = link->statistics();
-      sum.links.clients += part.clients;
-      sum.links.refused += part.refused;
-      sum.links.bytes_in += part.bytes_in;
-      sum.links.bytes_out += part.bytes_out;
-      sum.links.frames_dropped += part.frames_dropped;
-    }
-    return sum;
+    return {.links = front_->statistics(), .lost = clock_.lost()};
   }
 
- private:
-  [[nodiscard]] Outcome<void> add(Outcome<std::unique_ptr<ClientLink>> link) {
-    if (!link) return tl::unexpected{link.error()};
-    links_.push_back(std::move(*link));
-    return {};
-  }
+  // What the front sees.
 
-  [[nodiscard]] LinkEvents events(const HostOptions& options) {
-    return {.on_bytes = [this](ClientLink& from, Bytes bytes) { receive(from, bytes); },
-            .on_log = options.log};
-  }
+  [[nodiscard]] boost::asio::io_context& context() noexcept override { return context_; }
 
-  void receive(ClientLink& from, Bytes bytes) {
-    catch_up();
-    listener_ = &from;
-    device_->receive(reached_, bytes);
-    pump();
-  }
-
-  /// Lets the device do what is due, forwards what it sends, and sees to it that this happens
-  /// again.
-  void pump() {
-    catch_up();
-    forward();
-    const auto now = Wall::now();
-    const auto next = device_->next_event();
-    const auto due = next ? std::min(clock_.wall_time(*next, now), now + kKeepUp) : now + kKeepUp;
-    due - now < kShortWait ? pump_soon() : pump_at(due);
-  }
-
-  /// Brings the device to the present, unless that takes too long: then time is lost.
-  void catch_up() {
+  Instant catch_up() override {
     const auto start = Wall::now();
     const auto present = clock_.virtual_time(start);
     while (reached_ < present) {
       reached_ = std::min(present, reached_ + kStride);
-      device_->advance_to(reached_);
+      device_.advance_to(reached_);
       if (reached_ < present && Wall::now() - start > kBudget) {
         clock_.lose(present - reached_);
-        return;
+        break;
       }
     }
+    return reached_;
   }
 
-  void forward() {
-    for (const auto& message : device_->sent()) {
-      if (listener_ != nullptr) listener_->send(message.bytes);
-    }
-    device_->clear_sent();
+  void reach(Instant time) override { reached_ = std::max(reached_, time); }
+
+  void pump() override {
+    device_.advance_to(catch_up());
+    front_->forward();
+    for (const auto& line : device_.take_log()) log(line);
+    const auto now = Wall::now();
+    const auto next = device_.next_event();
+    const auto due = next ? std::min(clock_.wall_time(*next, now), now + kKeepUp) : now + kKeepUp;
+    due - now < kShortWait ? pump_soon() : pump_at(due);
   }
 
+  void log(std::string_view line) const override { options_.log(line); }
+
+ private:
   void pump_soon() {
     if (std::exchange(is_pump_posted_, true)) return;
     boost::asio::post(context_, [this] {
@@ -156,32 +136,34 @@ class Host::Loop {
   }
 
   boost::asio::io_context context_{1};
-  std::unique_ptr<HostedStream> device_;
+  HostOptions options_;
+  AnyHosted hosted_;
+  HostedDevice& device_;  ///< the one in `hosted_`
+  std::unique_ptr<Front> front_;
+  Instant reached_;
   PacedClock clock_;
-  Instant reached_{};
   boost::asio::steady_timer timer_;
   boost::asio::signal_set signals_;
-  std::vector<std::unique_ptr<ClientLink>> links_;
-  ClientLink* listener_ = nullptr;  ///< who gets answers: one of `links_`
   bool is_pump_posted_ = false;
 };
 
-Host::Host(std::unique_ptr<Loop> loop) noexcept : loop_{std::move(loop)} {}
+Host::Host(std::unique_ptr<LoopOnAsio> loop) noexcept : loop_{std::move(loop)} {}
 Host::Host(Host&& other) noexcept = default;
 Host& Host::operator=(Host&& other) noexcept = default;
 Host::~Host() = default;
 
-Outcome<Host> Host::open(std::unique_ptr<HostedStream> device, const HostOptions& options) {
+Outcome<Host> Host::open(AnyHosted device, HostOptions options) {
   if (!PacedClock::is_speed(options.speed)) {
     return problem(ErrorCode::kBadValue, "speed",
                    "it is a factor from 0.001 to 10000; 1 is real time");
   }
-  if (!options.pty && !options.tcp) {
-    return problem(ErrorCode::kBadValue, "host", "a pseudo-terminal or a TCP port is needed");
+  if (auto* const stream = std::get_if<std::unique_ptr<HostedStream>>(&device);
+      stream != nullptr && options.line) {
+    device = put_on_line(std::move(*stream), *options.line);
   }
   try {
-    auto loop = std::make_unique<Loop>(std::move(device), options);
-    if (auto outcome = loop->listen(options); !outcome) return tl::unexpected{outcome.error()};
+    auto loop = std::make_unique<LoopOnAsio>(std::move(device), std::move(options));
+    if (auto outcome = loop->listen(); !outcome) return tl::unexpected{outcome.error()};
     return Host{std::move(loop)};
   } catch (const boost::system::system_error& error) {  // Asio out of descriptors
     return problem(ErrorCode::kSystem, "host", error.what());
@@ -195,6 +177,7 @@ void Host::set_input(std::string name, std::int64_t value,
                      std::function<void(bool is_taken)> tell) {
   loop_->set_input(std::move(name), value, std::move(tell));
 }
+void Host::with_bus(const std::function<void(BusPort& bus)>& use) { loop_->with_bus(use); }
 HostStatistics Host::statistics() const { return loop_->statistics(); }
 
 }  // namespace armjig

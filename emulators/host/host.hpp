@@ -10,17 +10,21 @@
 #include <vector>
 
 #include "emulators/host/client_link.hpp"
-#include "emulators/host/hosted_stream.hpp"
+#include "emulators/memory/hosted.hpp"
+#include "emulators/memory/serial_line.hpp"
 #include "harness/core/error.hpp"
+#include "harness/link/bus_port.hpp"
 
 namespace armjig {
 
-/// Where and how a device is hosted. At least one link is needed.
+/// Where and how a device is hosted. A stream has at least one link, a server TCP and nothing else,
+/// a bus none (`Host::with_bus`).
 struct HostOptions {
   enum class OnSignal : std::uint8_t { kNothing, kStop };
 
   std::optional<PtyOptions> pty;
   std::optional<TcpOptions> tcp;
+  std::optional<CharacterRate> line;  ///< bytes take their time, as on a serial line; none: no time
   double speed = 1;  ///< virtual over wall time, `PacedClock::kSlowest` to `kFastest`
   OnSignal on_signal = OnSignal::kNothing;  ///< `kStop`: SIGINT and SIGTERM end `run`
   std::function<void(std::string_view line)> log = [](std::string_view /*line*/) {};
@@ -32,16 +36,20 @@ struct HostStatistics {
 };
 
 /// Lets an emulated device live on the wall clock and talk to clients on real links. Bytes reach it
-/// at the virtual time of their arrival, and leave when virtual time has come; answers go to the
-/// link that sent last.
+/// at the virtual time of their arrival, and leave when virtual time has come.
 ///
-/// One thread: everything but `stop` and `set_input` belongs to the one that calls `run`.
+/// The answers of a stream go to the link that sent last. A server has each connection with its
+/// segments, half-close and reset; while it does not listen, connections are refused; what it does
+/// not read stays in the kernel but for 16 KiB. A client that does not read loses whole messages
+/// beyond 64 KiB.
+///
+/// One thread: everything but `stop`, `set_input` and `with_bus` belongs to the one that calls
+/// `run`.
 class Host {
  public:
-  /// Listens from now on; clients are served once it runs. Problems: `kBadValue` (speed, no link),
-  /// and those of `open_pty_link` and `open_tcp_link`.
-  [[nodiscard]] static Outcome<Host> open(std::unique_ptr<HostedStream> device,
-                                          const HostOptions& options);
+  /// Listens from now on; clients are served once it runs. Problems: `kBadValue` (speed, links),
+  /// and those of `open_pty_link` and `listen_on_tcp`.
+  [[nodiscard]] static Outcome<Host> open(AnyHosted device, HostOptions options);
   Host(Host&& other) noexcept;
   Host& operator=(Host&& other) noexcept;
   Host(const Host&) = delete;
@@ -62,13 +70,18 @@ class Host {
   /// of that name which takes the value. May be called from any thread.
   void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell);
 
+  /// Has `use` talk to the bus at its present time while `run` runs, and there, one after the
+  /// other; comes back when wall time has reached the end of that. May be called from any thread
+  /// but that. Requires a bus.
+  void with_bus(const std::function<void(BusPort& bus)>& use);
+
   [[nodiscard]] HostStatistics statistics() const;
 
  private:
-  class Loop;
-  explicit Host(std::unique_ptr<Loop> loop) noexcept;
+  class LoopOnAsio;
+  explicit Host(std::unique_ptr<LoopOnAsio> loop) noexcept;
 
-  std::unique_ptr<Loop> loop_;
+  std::unique_ptr<LoopOnAsio> loop_;
 };
 
 }  // namespace armjig

@@ -8,8 +8,8 @@
 
 namespace armjig {
 
-/// Virtual time at the pace of the wall clock: `speed` times as fast, 0 when made. It loses time
-/// only where it is told to.
+/// Virtual time at the pace of the wall clock: `speed` times as fast, `begin` at `start`. It loses
+/// time only where it is told to.
 class PacedClock {
  public:
   using Wall = std::chrono::steady_clock;
@@ -22,11 +22,12 @@ class PacedClock {
   }
 
   /// Requires `is_speed(speed)`.
-  PacedClock(double speed, Wall::time_point start) noexcept : speed_{speed}, start_{start} {}
+  PacedClock(double speed, Wall::time_point start, Instant begin = {}) noexcept
+      : speed_{speed}, start_{start}, begin_{begin} {}
 
   [[nodiscard]] Instant virtual_time(Wall::time_point wall) const noexcept {
     const std::chrono::duration<double, std::nano> elapsed = wall - start_;
-    return at(std::chrono::duration_cast<Duration>(elapsed * speed_) - lost_);
+    return begin_ + std::chrono::duration_cast<Duration>(elapsed * speed_) - lost_;
   }
 
   /// The wall time at which `virtual_time` reaches `time`, but at most an hour after `now`.
@@ -44,6 +45,7 @@ class PacedClock {
  private:
   double speed_;
   Wall::time_point start_;
+  Instant begin_;
   Duration lost_{};
 };
 

@@ -47,6 +47,15 @@ class PtyLink final : public ClientLink {
     write_waiting();
   }
 
+  void read_on() override {
+    if (!is_client_there_ || is_reading_ || !events_.wants_bytes()) return;
+    is_reading_ = true;
+    ready_.async_wait(stream_descriptor::wait_read, [this](const error_code& error) {
+      is_reading_ = false;
+      if (!error) read_turn();
+    });
+  }
+
   [[nodiscard]] std::vector<std::string> targets() const override {
     std::vector targets{"pty:" + terminal_.path()};
     if (!link_.path().empty()) targets.push_back("pty:" + link_.path());
@@ -75,17 +84,11 @@ class PtyLink final : public ClientLink {
     if (!is_there) return look_again();
     is_client_there_ = true;
     ++statistics_.clients;
-    read_when_ready();
-  }
-
-  void read_when_ready() {
-    ready_.async_wait(stream_descriptor::wait_read, [this](const error_code& error) {
-      if (!error) read_turn();
-    });
+    read_on();
   }
 
   void read_turn() {
-    std::array<std::byte, kTurn> buffer;
+    std::array<std::byte, kReadTurn> buffer;
     const auto size = ::read(terminal_.master().value(), buffer.data(), buffer.size());
     if (size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR)) return forget_client();
     if (size > 0) {
@@ -93,7 +96,7 @@ class PtyLink final : public ClientLink {
       statistics_.bytes_in += bytes.size();
       events_.on_bytes(*this, bytes);
     }
-    read_when_ready();
+    read_on();
   }
 
   /// Before anything is read from the next client, so it cannot lose an answer.
@@ -129,6 +132,7 @@ class PtyLink final : public ClientLink {
   boost::asio::steady_timer timer_;
   Outbox outbox_;
   bool is_client_there_ = false;
+  bool is_reading_ = false;
   bool is_waiting_to_write_ = false;
   std::uint64_t dropped_ = 0;  ///< beside the outbox
   LinkStatistics statistics_;

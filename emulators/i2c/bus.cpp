@@ -75,6 +75,11 @@ void Bus::advance_to(Instant time) {
   for (auto& device : devices_) device.advance_to(time);
 }
 
+bool Bus::set_input(Instant time, std::string_view name, std::int64_t value) {
+  return std::ranges::any_of(
+      devices_, [&](BusDevice& device) { return device.set_input(time, name, value); });
+}
+
 std::optional<Trouble> Bus::take_trouble(Trouble::Kind kind) {
   const auto found = std::ranges::find_if(troubles_, [&](const Trouble& trouble) {
     return trouble.kind == kind && trouble.byte == byte_ &&

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,7 @@ namespace armjig::i2c {
 /// - `stop(Instant)`: a stop or a repeated start ended its transaction;
 /// - `advance_to(Instant)`: time goes on without traffic;
 /// - `restart(Instant)`: power fails and comes back;
+/// - `set_input(Instant, name, value)`: does what no bus can, or answers false;
 /// - `stretch()`: for how long it holds the clock after the byte that it just had.
 class BusDevice {
  public:
@@ -45,6 +47,9 @@ class BusDevice {
   void advance_to(Instant time) { model_->advance_to(time); }
   void restart(Instant time) { model_->restart(time); }
   [[nodiscard]] Duration stretch() const { return model_->stretch(); }
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) {
+    return model_->set_input(time, name, value);
+  }
 
   /// The device itself; nullptr if it is none of that type.
   template <class Device>
@@ -68,6 +73,8 @@ class BusDevice {
     virtual void advance_to(Instant time) = 0;
     virtual void restart(Instant time) = 0;
     [[nodiscard]] virtual Duration stretch() const = 0;
+    [[nodiscard]] virtual bool set_input(Instant time, std::string_view name,
+                                         std::int64_t value) = 0;
   };
 
   template <class Device>
@@ -92,6 +99,12 @@ class BusDevice {
     Duration stretch() const override {
       if constexpr (requires { device.stretch(); }) return device.stretch();
       return {};
+    }
+    bool set_input(Instant time, std::string_view name, std::int64_t value) override {
+      if constexpr (requires { device.set_input(time, name, value); }) {
+        return device.set_input(time, name, value);
+      }
+      return false;
     }
     Device device;
   };
@@ -148,6 +161,8 @@ class Bus {
   /// Nine clocks and a stop, which free a data line that a device holds in the middle of a byte.
   BusReply recover(Instant time);
   void advance_to(Instant time);
+  /// Of the first device that has such an input. False: none has.
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
 
  private:
   [[nodiscard]] std::optional<Trouble> take_trouble(Trouble::Kind kind);

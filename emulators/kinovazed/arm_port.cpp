@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/kinovazed/arm_port.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 bool ArmPort::attempt(ArmCall call) noexcept {
   if (!is_plugged_) return false;
@@ -15,4 +15,4 @@ bool ArmPort::attempt(ArmCall call) noexcept {
   return false;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -13,7 +13,7 @@
 #include "emulators/kinovazed/plant.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// What the server does to the arm; each can fail.
 enum class ArmCall : std::uint8_t {
@@ -96,4 +96,4 @@ class ArmPort {
   std::array<Failure, kArmCallNames.size()> failures_{};
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -8,7 +8,7 @@
 #include "harness/core/time.hpp"
 #include "harness/wire/kinovazed/vocabulary.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// How long the server pauses and waits (docs/spec/kinovazed.md, "Times").
 namespace pace {
@@ -63,4 +63,4 @@ inline constexpr Behaviour kDocumentedBehaviour{
 /// (kinovazed.reply.race).
 enum class RaceOrder : std::uint8_t { kReplyFirst, kEventFirst, kRandom };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

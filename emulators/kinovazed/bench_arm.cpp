@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 constexpr std::array kAngles{&Pose::pitch, &Pose::yaw, &Pose::roll};
@@ -192,4 +192,4 @@ void BenchArm::steer(double elapsed) noexcept {
   }
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

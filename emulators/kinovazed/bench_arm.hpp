@@ -7,7 +7,7 @@
 #include "emulators/kinovazed/plant.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// What the header of a recording says about its arm; seconds, m/s, rad/s, m.
 struct BenchOptions {
@@ -86,4 +86,4 @@ class BenchArm {
   Stick stick_;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 ConnectionId Connections::connect() {
   waiting_.push_back({.id = next_id_});
@@ -104,4 +104,4 @@ void Connections::add(Instant time, ConnectionId id, SessionEvent::Kind kind, By
   event.bytes.assign(bytes.begin(), bytes.end());
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

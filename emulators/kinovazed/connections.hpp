@@ -13,18 +13,7 @@
 #include "harness/core/emulation.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::kinovazed {
-
-/// Connections are numbered from 0 in the order in which they come.
-using ConnectionId = std::uint32_t;
-
-/// What a client sees.
-struct ServerEvent {
-  Instant time{};
-  ConnectionId connection{};
-  SessionEvent::Kind kind{};
-  std::vector<std::byte> bytes;  ///< of `kData`
-};
+namespace armjig::kinovazed::emulation {
 
 /// The sockets of a server that takes one client at a time: those of clients that wait, the one
 /// that is served, and what the kernel keeps for each.
@@ -83,4 +72,4 @@ class Connections {
   std::size_t sent_count_ = 0;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

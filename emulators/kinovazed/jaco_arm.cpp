@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 constexpr double kArmSpeed = 36;    // degrees/s, joints 1 to 3
@@ -102,4 +102,4 @@ void JacoArm::turn_joints(double elapsed) noexcept {
   body_.set_pose(forward(joints_));
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -8,7 +8,7 @@
 #include "emulators/kinovazed/plant.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// A Jaco with the lengths, ranges, speeds and times of Kinova's material (docs/spec/kinovazed.md,
 /// "The arm"): what a client may expect of a real one. Speeds are reached at once. Its angular
@@ -67,4 +67,4 @@ class JacoArm {
   std::optional<float> current_;  ///< none: as it moves
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 using Matrix = std::array<std::array<double, 4>, 3>;  // rotation and translation
@@ -186,4 +186,4 @@ std::optional<JointAngles> solve(const Pose& pose, const JointAngles& seed) noex
   return std::nullopt;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -7,7 +7,7 @@
 #include "emulators/kinovazed/pose.hpp"
 
 /// A JACO 2 with six joints and the curved wrist (j2n6s300), by Kinova's published lengths.
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// As the arm reports them, in degrees; joints 1, 4, 5 and 6 turn without end.
 using JointAngles = std::array<double, 6>;
@@ -26,4 +26,4 @@ inline constexpr JointRange kJoint3Range{19, 341};
 /// Joint angles for a pose, near `seed` if that leads there; none if the arm cannot reach it.
 [[nodiscard]] std::optional<JointAngles> solve(const Pose& pose, const JointAngles& seed) noexcept;
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

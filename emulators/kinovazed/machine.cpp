@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 using Cell = std::optional<State>;
@@ -70,4 +70,4 @@ std::optional<ArmReaction> Machine::reaction(State state, ArmEvent event) const 
   return row == arm.end() ? std::nullopt : std::optional{row->reaction};
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -10,7 +10,7 @@
 
 /// What the server may do when: its states, and what commands and the arm make of them. Tables
 /// only; time and arm are elsewhere.
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 enum class State : std::uint8_t {
   kEmergencyStopped,
@@ -84,4 +84,4 @@ struct Machine {
 /// The machine of every server that there is.
 [[nodiscard]] const Machine& shipped_machine() noexcept;
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 using Json = nlohmann::json;
@@ -132,4 +132,4 @@ Outcome<ObjectiveSet> parse_objectives(std::string_view json, const std::string&
   return ObjectiveSet{std::move(paths)};
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -10,7 +10,7 @@
 #include "harness/core/error.hpp"
 #include "harness/wire/kinovazed/vocabulary.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// What `RunObjective` runs: way-points in a frame.
 struct ObjectivePath {
@@ -43,4 +43,4 @@ class ObjectiveSet {
 [[nodiscard]] Outcome<ObjectiveSet> parse_objectives(std::string_view json,
                                                      const std::string& where);
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

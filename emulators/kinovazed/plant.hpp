@@ -7,7 +7,7 @@
 #include "emulators/kinovazed/pose.hpp"
 
 /// What a Jaco arm and whoever drives it have in common, however the arm is simulated.
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// The retraction mode as the arm reports it. Values without a name keep their number.
 enum class ArmMode : std::int32_t {
@@ -49,4 +49,4 @@ class Noise {
   std::uint64_t state_;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 constexpr float kStill = 1e-5F;
@@ -96,4 +96,4 @@ bool has_reached(const Pose& pose, const Pose& target, const Reach& reach) noexc
   return true;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

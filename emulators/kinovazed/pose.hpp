@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// Where the hand is: metres, then radians with R = Rx(pitch) Ry(yaw) Rz(roll), in the arm's base
 /// frame. Single precision, as the server computes.
@@ -49,4 +49,4 @@ struct Reach {
 [[nodiscard]] bool has_reached(const Pose& pose, const Pose& target,
                                const Reach& reach = {}) noexcept;
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

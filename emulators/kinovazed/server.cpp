@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 constexpr std::size_t kLogLines = 256;
@@ -333,4 +333,4 @@ void Server::end_process() {
   running_course_.reset();
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

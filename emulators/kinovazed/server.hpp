@@ -15,7 +15,7 @@
 #include "emulators/kinovazed/worker.hpp"
 #include "harness/wire/kinovazed/line_receiver.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// What happens when the original's process would end (kinovazed.death.process).
 enum class OnDeath : std::uint8_t {
@@ -181,4 +181,4 @@ class Server {
   std::deque<LogLine> log_;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -6,7 +6,7 @@
 
 #include "emulators/kinovazed/server.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 /// Commands whose one positive answer in profile documented is `Accepted`; the others have an
@@ -208,4 +208,4 @@ void Server::log_position(std::string_view frame, const Pose& pose) {
       frame, pose.x, pose.y, pose.z, pose.pitch, pose.yaw, pose.roll));
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

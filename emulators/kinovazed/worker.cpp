@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 constexpr std::uint16_t kPauseMs = 10;        // after press, release, zero axes, erase
@@ -481,4 +481,4 @@ Stick Worker::stick_of(const Deflection& deflection) const noexcept {
   return {};
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -11,7 +11,7 @@
 #include "emulators/kinovazed/machine.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// What the network side may ask of the arm side; one job after the other.
 struct Job {
@@ -193,4 +193,4 @@ class Worker {
   bool is_settling_ = false;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

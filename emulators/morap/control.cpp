@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 constexpr float kSupply = 24.0F;
@@ -126,4 +126,4 @@ float FeedbackLoop::step(const ControllerSet& set, const Scale& scale, float ang
   return volts;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -11,7 +11,7 @@
 /// The arithmetic of a node: single precision, one rounding for each operation, in the order of
 /// docs/spec/morap.md. Values that the firmware computes anew at each tick from the same constants
 /// are computed once.
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// The figures and habits by which a node controls its motor. These are the firmware's; a node with
 /// others is a faulty one (defects/).
@@ -96,4 +96,4 @@ class FeedbackLoop {
   bool is_saturated_ = false;
 };
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -6,7 +6,7 @@
 
 #include "harness/core/time.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// Time as a node counts it: clocks of 62.5 ns since its power-on, which nanoseconds cannot say.
 using Cycles = std::int64_t;
@@ -27,4 +27,4 @@ inline constexpr Cycles kNever = std::numeric_limits<Cycles>::max() / 128;
   return at(Duration{cycles / 2 * 125 + (cycles % 2 != 0 ? 63 : 0)});
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

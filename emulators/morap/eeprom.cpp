@@ -5,7 +5,7 @@
 
 #include "harness/core/bytes.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 // Places in bytes; a word has two. Filters are padded to full length and even places.
@@ -123,4 +123,4 @@ Eeprom dcx26l(std::uint8_t node) noexcept {
            0.2524F}};
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

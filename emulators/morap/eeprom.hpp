@@ -9,7 +9,7 @@
 #include "emulators/morap/profile.hpp"
 #include "harness/wire/morap/controller_set.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// Motor and gear as the node believes them to be.
 struct MotorConstants {
@@ -52,4 +52,4 @@ using EepromImage = std::array<std::byte, kEepromSize>;
 [[nodiscard]] Eeprom dcx22l(std::uint8_t node = 2) noexcept;
 [[nodiscard]] Eeprom dcx26l(std::uint8_t node = 1) noexcept;
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

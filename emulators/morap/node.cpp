@@ -7,7 +7,7 @@
 
 #include "emulators/morap/tuner.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 constexpr float kIdlePeriod = 1.0F / 200.0F;  // s; by which voltage and torque modes reckon
@@ -71,7 +71,7 @@ std::byte Node::read(Instant time) noexcept {
     case ReadKind::kFloat:
       break;
   }
-  if (place == 0) ram_.value = encode(sample_float());
+  if (place == 0) ram_.value = morap::encode(sample_float());
   if (place < ram_.value.size()) return ram_.value[place];
   note(Undefined::kReadPastFloat);
   return {};
@@ -411,4 +411,4 @@ void Node::connect_plant() noexcept {
   plant_->connect(ram_.drive.bridge, static_cast<double>(volts_of(ram_.drive.level)));
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

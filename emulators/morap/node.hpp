@@ -15,7 +15,7 @@
 #include "harness/core/emulation.hpp"
 #include "harness/wire/morap/message.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// What the real firmware does in ways that nobody can predict: it writes or reads memory that
 /// belongs to something else, or asks its number library for what has no answer. The emulator goes
@@ -178,4 +178,4 @@ class Node {
 };
 static_assert(EmulatedBusDevice<Node>);
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 constexpr std::array kFilters{&ControllerSet::d, &ControllerSet::c, &ControllerSet::f};
@@ -84,4 +84,4 @@ void ParameterParser::next_filter() noexcept {
   next(++filter_ < kFilters.size() ? Part::kCount : Part::kIntegral);
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -6,7 +6,7 @@
 
 #include "harness/wire/morap/controller_set.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// The node's reader of a parameter message, byte by byte. What it has read of an unfinished
 /// message stays in the set that it writes to (morap.program.shared-staging).
@@ -33,4 +33,4 @@ class ParameterParser {
   std::size_t place_ = 0;   ///< bytes of the part that were read
 };
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

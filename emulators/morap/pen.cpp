@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 /// Bytes that a command uses up; the board waits for ever for the rest to vanish.
@@ -72,4 +72,4 @@ void Pen::obey(Bytes data) {
   hangs_ = setup_.hangs_on_surplus && data.size() > used_by(data);
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

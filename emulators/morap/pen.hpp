@@ -9,7 +9,7 @@
 #include "harness/core/emulation.hpp"
 #include "harness/wire/morap/pen.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// Which library the board of the pen was built with; nobody recorded which it was.
 enum class PenLibrary : std::uint8_t {
@@ -67,4 +67,4 @@ class Pen {
 };
 static_assert(EmulatedBusDevice<Pen>);
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

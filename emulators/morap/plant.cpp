@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 PlantParameters plant_of(const MotorConstants& motor, double inertia, double viscous_friction,
                          double dry_friction) noexcept {
@@ -92,4 +92,4 @@ void Plant::coast(std::int64_t steps, double turn) noexcept {
   for (; steps > 0; --steps) angle_ = angle_ + turn;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

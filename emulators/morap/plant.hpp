@@ -6,7 +6,7 @@
 #include "emulators/morap/cycles.hpp"
 #include "emulators/morap/eeprom.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// A motor with its gear, its encoder and what hangs on the output shaft, SI units. Not what the
 /// node believes (`MotorConstants`) but what is there.
@@ -81,4 +81,4 @@ class Plant {
   double angle_ = 0.0;
 };
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -5,7 +5,7 @@
 
 #include "harness/wire/morap/message.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// In what the public document and the shipped firmware differ. All differences are here; whatever
 /// is not, both do alike. Each cites its row of docs/spec/morap.md, section Contradictions.
@@ -21,4 +21,4 @@ struct Profile {
 inline constexpr Profile kFirmware{false, true, kLastNode, false, false, false};
 inline constexpr Profile kDocumented{true, false, kLastDocumentedNode, true, true, true};
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

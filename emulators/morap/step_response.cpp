@@ -7,7 +7,7 @@
 #include <tuple>
 #include <variant>
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 /// The node installs the controller at a tick.
@@ -73,4 +73,4 @@ StepResponse run(const StepTest& test) {
   return response;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -9,7 +9,7 @@
 #include "harness/core/time.hpp"
 #include "harness/wire/morap/message.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// A node that gets its controller, is calibrated where it stands, and told to go somewhere.
 struct StepTest {
@@ -45,4 +45,4 @@ inline constexpr double kSettlingBand = 0.02;
 /// position or speed controller.
 [[nodiscard]] StepResponse run(const StepTest& test);
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -3,7 +3,7 @@
 
 // Compiled with -ffp-contract=off, as everything under emulators/. The order of the operations is
 // the firmware's: exact arithmetic would cancel what shows in the last bits here.
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 constexpr float kLargestInertia = 10.0F;
@@ -133,4 +133,4 @@ std::optional<ControllerSet> tune(const TuneRequest& request, const MotorConstan
   return pi_speed(design);
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

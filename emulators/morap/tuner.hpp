@@ -7,7 +7,7 @@
 #include "emulators/morap/profile.hpp"
 #include "harness/wire/morap/message.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// The parameters that a node computes from a tuning message, bit for bit: single precision, one
 /// rounding for each operation, in the order of docs/spec/morap.md, section Tuner. None if the
@@ -16,4 +16,4 @@ namespace armjig::morap {
                                                 const MotorConstants& motor,
                                                 const Profile& profile) noexcept;
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 constexpr std::array kInputs{
@@ -133,4 +133,4 @@ void Arm::reboot(Instant time) {
   if (gripper_) gripper_->reboot(time);
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

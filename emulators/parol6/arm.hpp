@@ -16,7 +16,7 @@
 #include "harness/core/emulation.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 struct ArmOptions {
   Plant plant = standard_plant();
@@ -80,4 +80,4 @@ class Arm {
 
 static_assert(EmulatedStream<Arm>);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -6,7 +6,7 @@
 #include "harness/wire/parol6/joint_bounds.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 constexpr std::array<StepsPerSecond2, kJointCount> kPowerUpAcceleration{
@@ -477,4 +477,4 @@ std::uint8_t Board::joints_out_of_range() const noexcept {
   return flags;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -19,7 +19,7 @@
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// The clocks of one particular board.
 struct BoardTiming {
@@ -177,4 +177,4 @@ class Board {
   std::vector<Emission> sent_;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

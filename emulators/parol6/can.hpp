@@ -8,7 +8,7 @@
 
 #include "harness/core/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// A CAN data frame with an 11-bit identifier.
 struct CanFrame {
@@ -40,4 +40,4 @@ enum class GripperCan : std::uint8_t {
 }
 inline constexpr std::uint16_t kCanErrorBit = 1;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

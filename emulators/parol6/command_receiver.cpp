@@ -3,7 +3,7 @@
 
 #include <variant>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 CommandReceiver::Step CommandReceiver::step_strictly(Bytes in) noexcept {
   std::size_t used = 0;
@@ -30,4 +30,4 @@ CommandReceiver::Step CommandReceiver::step_as_shipped(Bytes in) noexcept {
   return {used, std::nullopt};
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -11,7 +11,7 @@
 #include "harness/wire/parol6/frame.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// Finds the frames that a board of some profile accepts. Cutting the stream differently never
 /// changes what is accepted.
@@ -44,4 +44,4 @@ class CommandReceiver {
   Splitter strict_;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

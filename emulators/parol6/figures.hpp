@@ -7,7 +7,7 @@
 #include "harness/core/quantity.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// The built-in two-leg demonstration of one joint (docs/spec/parol6.md, "Demonstration").
 struct DemoParameters {
@@ -32,4 +32,4 @@ struct BoardFigures {
   friend bool operator==(const BoardFigures&, const BoardFigures&) = default;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

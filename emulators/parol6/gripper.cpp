@@ -9,7 +9,7 @@
 #include "harness/core/bytes.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 constexpr std::int64_t kTicksPerSecond = 5'000;
@@ -376,4 +376,4 @@ Gripper::Units Gripper::room(std::int32_t direction) const noexcept {
   return std::max(direction * (units_of(end) - position_), Units{0});
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

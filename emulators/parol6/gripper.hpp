@@ -12,7 +12,7 @@
 #include "harness/core/quantity.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// What the fingers meet. Places are position bytes (0 open, 255 closed) of an uncalibrated
 /// gripper. Fingers that are beyond such a place already stay where they are.
@@ -197,4 +197,4 @@ class Gripper {
   std::vector<CanEmission> sent_;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <span>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 enum JointIndex : std::size_t { kJ1, kJ2, kJ3, kJ4, kJ5, kJ6 };
@@ -172,4 +172,4 @@ void Homing::finish(std::array<Joint, kJointCount>& joints) noexcept {
   forget();
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -8,7 +8,7 @@
 #include "harness/core/quantity.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// The homing figures of one joint. Targets count from the switch.
 struct HomingParameters {
@@ -107,4 +107,4 @@ class Homing {
   bool noticed_ = false;  ///< something happened in this pass
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 /// The axis follows the counter for as long as this lives.
@@ -101,4 +101,4 @@ std::int64_t Joint::coast(const PassSpan& span) noexcept {
   return span.first;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

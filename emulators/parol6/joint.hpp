@@ -6,7 +6,7 @@
 #include "emulators/parol6/plant.hpp"
 #include "emulators/parol6/stepper.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// What the firmware did with a joint in a pass. As long as the firmware's own state stays the
 /// same, every later pass does the same again, which is what makes coasting over passes exact.
@@ -51,4 +51,4 @@ struct Joint {
   void note(Motion done) noexcept { motion = motion == Motion::kNone ? done : Motion::kSeveral; }
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -3,7 +3,7 @@
 
 #include "emulators/parol6/homing.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 Level Axis::switch_level() const noexcept {
   const bool is_closed = [this] {
@@ -53,4 +53,4 @@ Plant standard_plant() noexcept {
   return plant;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

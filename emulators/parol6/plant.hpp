@@ -7,7 +7,7 @@
 #include "harness/core/quantity.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 enum class Level : std::uint8_t { kLow, kHigh };
 
@@ -75,4 +75,4 @@ struct Plant {
 /// near its standby position (docs/spec/parol6.md, "Homing").
 [[nodiscard]] Plant standard_plant() noexcept;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -3,7 +3,7 @@
 
 #include "harness/wire/parol6/splitter.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// In what boards that speak the protocol differ: one named choice for each difference between the
 /// shipped board and the one that the document promises (docs/spec/parol6.md, "Profiles and
@@ -69,4 +69,4 @@ inline constexpr BoardProfile kDocumentedBoard{
     .stops_at_bounds = false,
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 constexpr double kMicrosPerSecond = 1'000'000.0;
@@ -210,4 +210,4 @@ void Stepper::coast_go_to(const PassSpan& span, Steps goal, StepsPerSecond feed)
   }
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

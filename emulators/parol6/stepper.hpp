@@ -5,7 +5,7 @@
 
 #include "harness/core/quantity.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// The board's free-running microsecond clock; it wraps after 71.6 minutes.
 struct Micros {
@@ -104,4 +104,4 @@ class Stepper {
 /// distance in 10 ms, in wrapping 32-bit integers, halved toward zero.
 [[nodiscard]] StepRate go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -5,11 +5,11 @@
 
 #include "emulators/demo/demo.hpp"
 
-namespace armjig::demo {
+namespace armjig::demo::replay {
 
 Outcome<Replayed> replay(const Trace& trace) {
   Replayed replayed;
-  StreamDevice device;
+  emulation::StreamDevice device;
   for (const auto& event : trace.events) {
     device.advance_to(event.time);
     if (event.dir == "to_device") device.receive(event.time, event.bytes);
@@ -25,4 +25,4 @@ Outcome<Replayed> replay(const Trace& trace) {
   return replayed;
 }
 
-}  // namespace armjig::demo
+}  // namespace armjig::demo::replay

@@ -5,9 +5,9 @@
 #include "harness/capture/trace.hpp"
 #include "harness/core/error.hpp"
 
-namespace armjig::demo {
+namespace armjig::demo::replay {
 
 /// Drives a fresh demo device on a stream with the `to_device` lines of a recording.
 [[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
 
-}  // namespace armjig::demo
+}  // namespace armjig::demo::replay

@@ -15,9 +15,10 @@
 
 #include "emulators/kinovazed/server.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::replay {
 namespace {
 
+using namespace emulation;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
 
@@ -364,4 +365,4 @@ Outcome<Replayed> replay(const Trace& trace) {
   return player.result(*recording);
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::replay

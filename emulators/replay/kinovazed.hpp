@@ -5,7 +5,7 @@
 #include "harness/capture/trace.hpp"
 #include "harness/core/error.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::replay {
 
 /// Drives a fresh server, with the arm that the header describes behind it, by what clients and arm
 /// did in a recording, as captures/kinovazed/README.md says: each line when all that was recorded
@@ -16,4 +16,4 @@ namespace armjig::kinovazed {
 /// last thing that a client or the arm did.
 [[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::replay

@@ -13,12 +13,13 @@
 
 #include "emulators/kinovazed/server.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::replay {
 namespace {
 
+using namespace emulation;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
 constexpr std::string_view kFormat = "state-command-matrix/1";
 /// Replies are what comes by then.
@@ -179,12 +180,12 @@ auto malformed(const std::string& where, std::string_view what) {
 
 }  // namespace
 
-Outcome<MatrixVerdict> verify_matrix(std::string_view text, const std::string& where) {
+Outcome<TableVerdict> verify_matrix(std::string_view text, const std::string& where) {
   const auto table = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   const bool is_table = table.is_object() && table.value("format", Json{}) == kFormat &&
                         table.value("entries", Json{}).is_array();
   if (!is_table) return malformed(where, fmt::format("it is no table of form {}", kFormat));
-  MatrixVerdict verdict;
+  TableVerdict verdict;
   for (const auto& cell : table["entries"]) {
     ++verdict.cells;
     const auto place = fmt::format("{}, entry {}", where, verdict.cells);
@@ -204,4 +205,4 @@ Outcome<MatrixVerdict> verify_matrix(std::string_view text, const std::string& w
   return verdict;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::replay

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::replay {
 namespace {
 
 using Events = std::vector<TraceEvent>;
@@ -147,4 +147,4 @@ Difference session_difference(const Events& recorded, const Events& actual) {
   return session_difference(recorded, actual, SessionRules{});
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::replay

@@ -10,7 +10,7 @@
 #include "harness/capture/trace.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::replay {
 
 /// In what a replay may differ from a recording of a server (captures/kinovazed/README.md, "What is
 /// exact and what is not"). Everything else is exact.
@@ -39,4 +39,4 @@ struct SessionRules {
 [[nodiscard]] std::optional<TraceDifference> session_difference(
     const std::vector<TraceEvent>& recorded, const std::vector<TraceEvent>& actual);
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::replay

@@ -15,9 +15,10 @@
 #include "emulators/morap/pen.hpp"
 #include "harness/core/hex.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::replay {
 namespace {
 
+using namespace emulation;
 using Json = nlohmann::json;
 
 /// Reads the keys of a JSON object; remembers the first that is wrong.
@@ -286,4 +287,4 @@ Outcome<Replayed> replay(const Trace& trace) {
   return replayed;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::replay

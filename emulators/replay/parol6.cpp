@@ -11,9 +11,10 @@
 
 #include "emulators/parol6/board.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::replay {
 namespace {
 
+using namespace emulation;
 using Json = nlohmann::json;
 
 struct Recording {
@@ -190,4 +191,4 @@ Outcome<Replayed> replay(const Trace& trace) {
   return replayed;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::replay

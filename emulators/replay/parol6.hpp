@@ -5,11 +5,11 @@
 #include "harness/capture/trace.hpp"
 #include "harness/core/error.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::replay {
 
 /// Drives a fresh board with the stimulus of a recording, on the plant and the clocks that its
 /// header names, and answers what the board sent. CAN frames are among it only if the recording has
 /// them.
 [[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::replay

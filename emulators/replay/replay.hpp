@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
-#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,19 +22,32 @@ struct Replayed {
 using Comparison = std::optional<TraceDifference> (*)(const std::vector<TraceEvent>& recorded,
                                                       const std::vector<TraceEvent>& actual);
 
-/// A device whose recordings can be replayed into an emulator.
-struct ReplayEntry {
-  std::string_view device;
-  /// Drives a fresh emulator with the stimulus of the recording.
-  Outcome<Replayed> (*replay)(const Trace& trace);
-  Comparison compare = first_difference;
+/// A cell of a table of states and commands in which the emulated device differs.
+struct CellDifference {
+  std::string cell;      ///< state and command
+  std::string recorded;  ///< what was said, where it led
+  std::string actual;
 };
 
-/// All of them, by name.
-[[nodiscard]] std::span<const ReplayEntry> replays() noexcept;
+/// How an emulated device does by such a table.
+struct TableVerdict {
+  std::size_t cells{};
+  std::vector<CellDifference> differences;
+};
+
+/// How recordings of one device are replayed into a fresh emulator.
+struct Replay {
+  /// Drives it with the stimulus of the recording.
+  Outcome<Replayed> (*run)(const Trace& trace){};
+  Comparison compare = first_difference;
+  /// Tries it cell by cell on a table of states and commands; nullptr: there are none of the
+  /// device. Problems: `kMalformed`; `where` is for messages.
+  Outcome<TableVerdict> (*verify_table)(std::string_view text, const std::string& where){};
+};
 
 /// Replays a recording and compares. No difference: the emulator and the recorded device are
-/// identical there. `kUnknownDevice` if no emulator can replay the device.
-[[nodiscard]] Outcome<std::optional<TraceDifference>> verify(const Trace& trace);
+/// identical there.
+[[nodiscard]] Outcome<std::optional<TraceDifference>> verify(const Trace& trace,
+                                                             const Replay& replay);
 
 }  // namespace armjig

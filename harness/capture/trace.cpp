@@ -143,11 +143,10 @@ std::string describe_event(const std::optional<TraceEvent>& event) {
 }
 
 /// The only message in the bytes that a device sent, if they are just one.
-std::optional<Message> sole_message(std::string_view device, const TraceEvent& event) {
-  const auto entry = std::ranges::find(dissectors(), device, &DissectorEntry::device);
-  if (entry == dissectors().end() || event.dir != "from_device") return std::nullopt;
+std::optional<Message> sole_message(MakeDissector make_dissector, const TraceEvent& event) {
+  if (make_dissector == nullptr || event.dir != "from_device") return std::nullopt;
   std::vector<Message> messages;
-  const auto dissector = entry->make();
+  const auto dissector = make_dissector();
   dissector->feed(Direction::kFromDevice, event.time, event.bytes, messages);
   dissector->finish(messages);
   if (messages.size() != 1) return std::nullopt;
@@ -241,7 +240,8 @@ std::optional<TraceDifference> first_difference(const std::vector<TraceEvent>& e
   return difference;
 }
 
-std::string describe(const TraceDifference& difference, const Trace& trace) {
+std::string describe(const TraceDifference& difference, const Trace& trace,
+                     MakeDissector make_dissector) {
   const auto& [expected, actual] = difference;
   auto text = expected ? fmt::format("  {}:{}: differs at {} us\n", trace.path, expected->line,
                                      microseconds(expected->time))
@@ -253,8 +253,8 @@ std::string describe(const TraceDifference& difference, const Trace& trace) {
     text += fmt::format("  time: expected {} us, got {} us\n", microseconds(expected->time),
                         microseconds(actual->time));
   }
-  const auto wanted = sole_message(trace.device, *expected);
-  const auto got = sole_message(trace.device, *actual);
+  const auto wanted = sole_message(make_dissector, *expected);
+  const auto got = sole_message(make_dissector, *actual);
   if (!wanted || !got) return text;
   for (const auto& field : field_differences(wanted->fields, wanted->raw, got->raw)) {
     text += fmt::format("  {}\n", field);

@@ -10,6 +10,7 @@
 
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
+#include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
@@ -60,7 +61,8 @@ struct TraceDifference {
     const std::vector<TraceEvent>& expected, const std::vector<TraceEvent>& actual);
 
 /// The difference for people: line, time, bytes both ways, the fields that differ. Several lines,
-/// indented.
-[[nodiscard]] std::string describe(const TraceDifference& difference, const Trace& trace);
+/// indented. The dissector is that of the trace's device; nullptr: no fields are told.
+[[nodiscard]] std::string describe(const TraceDifference& difference, const Trace& trace,
+                                   MakeDissector make_dissector);
 
 }  // namespace armjig

@@ -5,11 +5,11 @@
 #include <fmt/core.h>
 #include <toml++/toml.h>
 
-#include <cerrno>
-#include <fstream>
-#include <iterator>
+#include <algorithm>
 #include <set>
 #include <utility>
+
+#include "harness/config/option_file.hpp"
 
 namespace armjig {
 
@@ -30,17 +30,26 @@ struct TomlTable::File {
   }
 };
 
+namespace {
+
+/// As users write it behind `NAME=`; empty for what no option has.
+std::string option_value(const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return *text;
+  if (const auto number = node.value_exact<std::int64_t>()) return fmt::format("{}", *number);
+  if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
+  if (const auto is_so = node.value_exact<bool>()) return *is_so ? "yes" : "no";
+  return {};
+}
+
+}  // namespace
+
 TomlTable::TomlTable(std::shared_ptr<File> file, std::shared_ptr<Part> part)
     : file_{std::move(file)}, part_{std::move(part)} {
   file_->parts.push_back(part_);
 }
 
 Outcome<TomlTable> TomlTable::read(const std::string& path) {
-  std::ifstream in{path, std::ios::binary};
-  if (!in) return problem(ErrorCode::kCannotRead, path, "check the path and its permissions");
-  const std::string text{std::istreambuf_iterator<char>{in}, {}};
-  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "it is a folder or cannot be read");
-  return parse(text, path);
+  return read_text(path).and_then([&](const std::string& text) { return parse(text, path); });
 }
 
 Outcome<TomlTable> TomlTable::parse(std::string_view text, std::string path) {
@@ -125,6 +134,26 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
     complain(key, fmt::format("write [[{}]], and the keys of each below it", key));
   }
   return found;
+}
+
+Outcome<std::vector<OptionGroup>> TomlTable::groups() {
+  std::vector<OptionGroup> groups;
+  const auto where = [this](const toml::node& node) {
+    return fmt::format("{}:{}", file_->path, node.source().begin.line);
+  };
+  for (const auto& [kind, array] : *part_->table) {
+    for (const auto& part : tables(kind.str())) {
+      const auto& table = *part.part_->table;
+      auto& group = groups.emplace_back(OptionGroup{std::string{kind.str()}, where(table), {}});
+      for (const auto& [key, node] : table) {
+        part.part_->asked.emplace(key.str());
+        std::string name{key.str()};
+        std::ranges::replace(name, '_', '-');
+        group.keys.push_back({std::move(name), option_value(node), where(node)});
+      }
+    }
+  }
+  return finish().map([&] { return std::move(groups); });
 }
 
 void TomlTable::complain(std::string_view key, std::string hint) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/core/error.hpp"
+#include "harness/core/option.hpp"
 
 namespace armjig {
 
@@ -32,6 +33,10 @@ class TomlTable {
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key);
   /// The tables of `[[key]]`, in order; none if there are none.
   [[nodiscard]] std::vector<TomlTable> tables(std::string_view key);
+
+  /// All `[[kind]]` tables, by kind, as options: texts, numbers, and booleans as yes and no; `_` in
+  /// a key stands for `-`. Nothing else may be in the file. Problems: `kMalformed`.
+  [[nodiscard]] Outcome<std::vector<OptionGroup>> groups();
 
   /// Notes that the value of `key` will not do, or that it is missing.
   void complain(std::string_view key, std::string hint);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -42,7 +43,7 @@ struct SessionEvent {
   std::vector<std::byte> bytes;  ///< of `kData`
 };
 
-/// A device that serves one connection at a time.
+/// A device that serves one connection at a time. `connect` may answer whether it takes it.
 template <class Device>
 concept EmulatedServer =
     std::copyable<Device> && requires(Device device, const Device& constant, Instant time) {
@@ -56,6 +57,52 @@ concept EmulatedServer =
       { constant.sent() } -> std::convertible_to<std::span<const SessionEvent>>;
       device.clear_sent();
     };
+
+/// Connections are numbered by their server, from 0 in the order in which they come.
+using ConnectionId = std::uint32_t;
+
+/// What one of its clients sees of a server.
+struct ServerEvent {
+  Instant time{};
+  ConnectionId connection{};
+  SessionEvent::Kind kind{};
+  std::vector<std::byte> bytes;  ///< of `kData`
+};
+
+/// A device that knows many connections. While it does not listen, connections are to be refused;
+/// `connect` may answer none for the same. `unread` tells how many bytes of a client it has not
+/// read. `close`: the client has closed both directions. Numbers that are not known any more are
+/// passed over.
+template <class Device>
+concept EmulatedMultiServer =
+    std::copyable<Device> &&
+    requires(Device device, const Device& constant, Instant time, ConnectionId id) {
+      { constant.is_listening() } -> std::same_as<bool>;
+      { device.connect(time) } -> std::same_as<std::optional<ConnectionId>>;
+      device.receive(time, id, Bytes{});
+      device.half_close(time, id);
+      device.close(time, id);
+      device.reset(time, id);
+      { constant.unread(id) } -> std::convertible_to<std::size_t>;
+      device.advance_to(time);
+      { constant.next_event() } -> std::same_as<std::optional<Instant>>;
+      { constant.sent() } -> std::convertible_to<std::span<const ServerEvent>>;
+      device.clear_sent();
+    };
+
+/// Lets a server find what it looks for before it listens, by which nobody shall be kept waiting:
+/// a second at most. The server's time.
+template <class Server>
+[[nodiscard]] Instant wait_until_listening(Server& server) {
+  Instant time{};
+  while (!server.is_listening()) {
+    const auto next = server.next_event();
+    if (!next || *next > at(std::chrono::seconds{1})) break;
+    time = *next;
+    server.advance_to(time);
+  }
+  return time;
+}
 
 /// A device at the other end of an I2C bus, byte by byte. `write` tells whether it acknowledges. It
 /// may have more (`emulators/i2c/bus.hpp`).
@@ -84,5 +131,15 @@ concept EmulatedBus = std::copyable<Bus> && requires(Bus bus, Instant time) {
   { bus.stop(time) } -> std::same_as<BusReply>;
   { bus.recover(time) } -> std::same_as<BusReply>;
 };
+
+/// The device that is held by value or by a pointer.
+template <class Held>
+[[nodiscard]] constexpr auto& device_in(Held& held) noexcept {
+  if constexpr (requires { *held; }) {
+    return *held;
+  } else {
+    return held;
+  }
+}
 
 }  // namespace armjig

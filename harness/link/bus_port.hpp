@@ -4,11 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
-#include "harness/core/time.hpp"
+#include "harness/link/endpoint.hpp"
 
 namespace armjig {
 
@@ -39,23 +38,24 @@ struct BusMessage {
   return {address, Access::kRead, {}, into};
 }
 
+/// The byte with which a message begins on the wire.
+[[nodiscard]] constexpr std::byte head_of(const BusMessage& message) noexcept {
+  return static_cast<std::byte>(message.address.value << 1 |
+                                (message.access == Access::kRead ? 1 : 0));
+}
+
 /// What the devices made of a transaction. It ends at the first refusal.
 enum class Transfer : std::uint8_t { kDone, kAddressRefused, kByteRefused };
 
-/// An I2C bus seen from its master. Time as in `StreamPort`; on a virtual clock every operation
-/// takes as long as its bits do.
+/// An I2C bus seen from its master. On a virtual clock every operation takes as long as its bits
+/// do.
 ///
 /// Every bus can do whole transactions. One that can also be led byte by byte lets repeated starts,
 /// short reads and refused bytes be said; behind an operating system or an adapter there is no such
 /// thing.
-class BusPort {
+class BusPort : public Endpoint {
  public:
   using Access = armjig::Access;
-
-  BusPort() = default;
-  BusPort(const BusPort&) = delete;
-  BusPort& operator=(const BusPort&) = delete;
-  virtual ~BusPort() = default;
 
   /// Whether single operations can be done; if not, each of them fails with `kUnsupported`.
   [[nodiscard]] virtual bool has_operations() const noexcept { return true; }
@@ -84,14 +84,6 @@ class BusPort {
 
   /// Lets time pass.
   virtual void wait_until(Instant time) = 0;
-  [[nodiscard]] virtual Instant now() const = 0;
-
-  /// As `StreamPort::touch`: does at a device what the bus cannot. False: nobody could.
-  [[nodiscard]] virtual bool touch(std::string_view input, std::int64_t value) {
-    (void)input;
-    (void)value;
-    return false;
-  }
 };
 
 }  // namespace armjig

@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
+#include "harness/link/stream_port.hpp"
 
 /// What the real ports are made of on POSIX systems.
 namespace armjig {
@@ -65,5 +67,45 @@ enum class Readiness : std::uint8_t { kReadable, kWritable };
 
 /// How long a peer may refuse to take bytes before a write gives up.
 inline constexpr Duration kWritePatience = std::chrono::seconds{2};
+
+/// What a terminal or a socket would take, as far as it goes; what came is thrown away, else the
+/// answers pile up.
+void send_last(int descriptor, Bytes message) noexcept;
+
+/// Opens a terminal in non-blocking mode and locks it with flock(2), as other serial programs do.
+/// Errors: `kBadTarget` if it is none, and those of errno.
+[[nodiscard]] Result<Descriptor> open_terminal(const std::string& path) noexcept;
+
+/// What a user can do about a file that cannot be opened.
+struct OpenHints {
+  std::string absent;
+  std::string not_allowed;
+  std::string busy;
+  std::string gone;
+  std::string wrong_kind;
+};
+[[nodiscard]] tl::unexpected<Problem> problem_of_open(const std::string& path, const Error& error,
+                                                      const OpenHints& hints);
+
+/// A terminal or a socket in non-blocking mode; they differ only in how bytes are written.
+class DescriptorStream final : public StreamPort {
+ public:
+  using Put = Result<void> (*)(const Descriptor&, Bytes, const Stopwatch&, Duration) noexcept;
+
+  DescriptorStream(Descriptor descriptor, Put put) noexcept
+      : descriptor_{std::move(descriptor)}, put_{put} {}
+
+  Result<void> write(Bytes bytes) override;
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override;
+  [[nodiscard]] Instant now() const override { return clock_.now(); }
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    return Lifeline{descriptor_.value(), send_last};
+  }
+
+ private:
+  Descriptor descriptor_;
+  Put put_;
+  Stopwatch clock_;
+};
 
 }  // namespace armjig

@@ -6,7 +6,6 @@
 #include <linux/i2c.h>
 #include <sys/ioctl.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <limits>
@@ -56,16 +55,19 @@ Result<Transfer> refusal_of(int error_number) {
   }
 }
 
+void send_last_message(int descriptor, Bytes message) noexcept {
+  const BusAddress address{static_cast<std::uint8_t>(std::to_integer<unsigned>(message[0]) >> 1U)};
+  auto part = to_kernel(write_to(address, message.subspan(1)));
+  i2c_rdwr_ioctl_data request{&part, 1};
+  ::ioctl(descriptor, I2C_RDWR, &request);
+}
+
 class I2cDev final : public RealBus {
  public:
   explicit I2cDev(Descriptor descriptor) noexcept : descriptor_{std::move(descriptor)} {}
 
   Result<Transfer> transfer(std::span<const BusMessage> messages) override {
-    const auto is_too_long = [](const BusMessage& message) {
-      return std::max(message.write.size(), message.read.size()) > kLongestMessage;
-    };
-    if (messages.empty() || messages.size() > I2C_RDWR_IOCTL_MAX_MSGS ||
-        std::ranges::any_of(messages, is_too_long)) {
+    if (!can_do(messages, I2C_RDWR_IOCTL_MAX_MSGS, kLongestMessage)) {
       return fail(ErrorCode::kBadValue);
     }
     std::vector<i2c_msg> parts;
@@ -78,29 +80,26 @@ class I2cDev final : public RealBus {
                                                              : Transfer::kByteRefused;
   }
 
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    return Lifeline{descriptor_.value(), send_last_message};
+  }
+
  private:
   Descriptor descriptor_;
 };
 
-auto problem_of_open(const std::string& path, int error_number) {
-  const auto error = error_from_errno(error_number);
-  switch (error.code) {
-    case ErrorCode::kNotFound:
-      return problem(error.code, path,
-                     "there is no such bus; 'i2cdetect -l' lists them, after 'modprobe i2c-dev'");
-    case ErrorCode::kNoPermission:
-      return problem(error.code, path,
-                     "'sudo usermod -aG i2c $USER' and a new login let you use I2C buses");
-    default:
-      return problem(error.code, path, "is it an I2C bus?");
-  }
-}
+const OpenHints kHints{
+    .absent = "there is no such bus; 'i2cdetect -l' lists them, after 'modprobe i2c-dev'",
+    .not_allowed = "'sudo usermod -aG i2c $USER' and a new login let you use I2C buses",
+    .busy = "is it an I2C bus?",
+    .gone = "is it an I2C bus?",
+    .wrong_kind = ""};
 
 }  // namespace
 
 Outcome<std::unique_ptr<BusPort>> open_i2c_dev(const std::string& path) {
   Descriptor descriptor{::open(path.c_str(), O_RDWR | O_CLOEXEC)};
-  if (!descriptor.is_open()) return problem_of_open(path, errno);
+  if (!descriptor.is_open()) return problem_of_open(path, error_from_errno(errno), kHints);
   unsigned long functions = 0;
   if (::ioctl(descriptor.value(), I2C_FUNCS, &functions) < 0) {
     return problem(ErrorCode::kUnsupported, path, "it is not an I2C bus; write i2c:/dev/i2c-N");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/link/i2c_tiny_usb.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -28,17 +27,17 @@ constexpr std::size_t kLongestMessage = 4096;  // libusb on Linux carries no mor
 
 constexpr std::array kNumbers{UsbNumbers{0x0403, 0xC631}, UsbNumbers{0x1C40, 0x0534}};
 
+void send_last_message(int descriptor, Bytes message) noexcept {
+  const auto address = static_cast<std::uint16_t>(std::to_integer<unsigned>(message[0]) >> 1U);
+  send_last_request(descriptor, {kTransfer | kBegins | kEnds, 0, address}, message.subspan(1));
+}
+
 class TinyUsb final : public RealBus {
  public:
   explicit TinyUsb(std::unique_ptr<UsbControl> usb) noexcept : usb_{std::move(usb)} {}
 
   Result<Transfer> transfer(std::span<const BusMessage> messages) override {
-    const auto is_too_long = [](const BusMessage& message) {
-      return std::max(message.write.size(), message.read.size()) > kLongestMessage;
-    };
-    if (messages.empty() || std::ranges::any_of(messages, is_too_long)) {
-      return fail(ErrorCode::kBadValue);
-    }
+    if (!can_do(messages, SIZE_MAX, kLongestMessage)) return fail(ErrorCode::kBadValue);
     for (std::size_t i = 0; i < messages.size(); ++i) {
       auto command = static_cast<std::uint8_t>(kTransfer | kBegins);
       if (i + 1 == messages.size()) command |= kEnds;
@@ -46,6 +45,11 @@ class TinyUsb final : public RealBus {
       if (!done || *done != Transfer::kDone) return done;
     }
     return Transfer::kDone;
+  }
+
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    const auto file = usb_->descriptor();
+    return file ? std::optional{Lifeline{*file, send_last_message}} : std::nullopt;
   }
 
  private:

@@ -2,7 +2,7 @@
 #include "harness/link/impaired_bus.hpp"
 
 #include <array>
-#include <cassert>
+#include <deque>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -43,21 +43,54 @@ Outcome<std::unique_ptr<ImpairedBus>> ImpairedBus::make(std::unique_ptr<BusPort>
 }
 
 ImpairedBus::ImpairedBus(std::unique_ptr<BusPort> inner, const Impairment& impairment)
-    : inner_{std::move(inner)}, paths_{impairment} {
-  assert(inner_ != nullptr);
+    : BusAround{std::move(inner)}, paths_{impairment} {}
+
+Result<Transfer> ImpairedBus::transfer(std::span<const BusMessage> messages) {
+  if (has_operations()) return BusPort::transfer(messages);
+  auto end = Transfer::kDone;
+  std::vector<BusMessage> arriving;
+  std::deque<std::vector<std::byte>> written;
+  for (const auto& message : messages) {
+    end = carry(message, written.emplace_back());
+    const bool is_begun = end == Transfer::kDone || !written.back().empty();
+    if (is_begun)
+      arriving.push_back({message.address, message.access, written.back(), message.read});
+    if (end != Transfer::kDone) break;
+  }
+  if (arriving.empty()) return end;
+  const auto done = inner().transfer(arriving);
+  if (!done || *done != Transfer::kDone) return done;
+  for (const auto& message : arriving) {
+    for (auto& byte : message.read) byte = carry(paths_.in, byte).value_or(kIdle);
+  }
+  return end;
+}
+
+/// What of a message arrives, and how it ends there.
+Transfer ImpairedBus::carry(const BusMessage& message, std::vector<std::byte>& written) {
+  if (carry(paths_.out, head_of(message)) != head_of(message)) {
+    std::ignore = missed();
+    return Transfer::kAddressRefused;
+  }
+  for (const auto byte : message.write) {
+    const auto carried = carry(paths_.out, byte);
+    if (!carried) return Transfer::kByteRefused;
+    written.push_back(*carried);
+  }
+  return Transfer::kDone;
 }
 
 Result<Ack> ImpairedBus::start(BusAddress address, Access access) {
-  const auto byte = static_cast<std::byte>(address.value << 1 | (access == Access::kRead ? 1 : 0));
+  const auto byte = head_of({address, access});
   is_missed_ = carry(paths_.out, byte) != byte;
   if (is_missed_) return missed();
   is_started_ = true;
-  return inner_->start(address, access);
+  return inner().start(address, access);
 }
 
 Result<Ack> ImpairedBus::write(std::byte byte) {
   const auto carried = is_missed_ ? std::nullopt : carry(paths_.out, byte);
-  return carried ? inner_->write(*carried) : missed();
+  return carried ? inner().write(*carried) : missed();
 }
 
 Result<std::byte> ImpairedBus::read(Ack reply) {
@@ -65,20 +98,13 @@ Result<std::byte> ImpairedBus::read(Ack reply) {
     std::ignore = missed();
     return kIdle;
   }
-  const auto byte = inner_->read(reply);
+  const auto byte = inner().read(reply);
   return byte ? carry(paths_.in, *byte).value_or(kIdle) : byte;
 }
 
 Result<void> ImpairedBus::stop() {
   is_missed_ = false;
-  return std::exchange(is_started_, false) ? inner_->stop() : Result<void>{};
-}
-
-bool ImpairedBus::is_gone() const noexcept {
-  const auto is_broken = [](const ImpairedPath& path) {
-    return path.end(Instant::max()) == ImpairedPath::End::kBroken;
-  };
-  return is_broken(paths_.out) || is_broken(paths_.in);
+  return std::exchange(is_started_, false) ? inner().stop() : Result<void>{};
 }
 
 /// The byte as it arrives, after its delay; nothing if it does not arrive.

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
-#include "harness/link/bus_port.hpp"
 #include "harness/link/impaired_path.hpp"
+#include "harness/link/port_around.hpp"
 
 namespace armjig {
 
@@ -19,33 +21,33 @@ namespace armjig {
 ///   device.
 /// - `delay`, `stall`, `bandwidth`: the bus waits, as for a device that stretches the clock.
 /// - `disconnect`: from then on nobody is there.
-class ImpairedBus final : public BusPort {
+///
+/// A bus that does whole transactions only, as all real ones, gets what would arrive of one in a
+/// single piece: it waits before and after, and never between two bytes; a message whose bytes are
+/// all lost is left out together with its address; what is lost in the middle ends the transaction
+/// with a stop.
+class ImpairedBus final : public BusAround {
  public:
   /// Requires `inner`. Problems: `kUnsupported` for defects that a bus cannot have.
   [[nodiscard]] static Outcome<std::unique_ptr<ImpairedBus>> make(std::unique_ptr<BusPort> inner,
                                                                   const Impairment& impairment);
 
+  [[nodiscard]] Result<Transfer> transfer(std::span<const BusMessage> messages) override;
   [[nodiscard]] Result<Ack> start(BusAddress address, Access access) override;
   [[nodiscard]] Result<Ack> write(std::byte byte) override;
   [[nodiscard]] Result<std::byte> read(Ack reply) override;
   Result<void> stop() override;
-  Result<void> recover() override { return inner_->recover(); }
-  void wait_until(Instant time) override { inner_->wait_until(time); }
-  [[nodiscard]] Instant now() const override { return inner_->now(); }
-  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
-    return inner_->touch(input, value);
-  }
 
   [[nodiscard]] ImpairmentStatistics statistics() const noexcept { return paths_.statistics(); }
 
  private:
   ImpairedBus(std::unique_ptr<BusPort> inner, const Impairment& impairment);
 
-  [[nodiscard]] bool is_gone() const noexcept;
+  [[nodiscard]] bool is_gone() const noexcept { return paths_.is_broken(Instant::max()); }
+  [[nodiscard]] Transfer carry(const BusMessage& message, std::vector<std::byte>& written);
   [[nodiscard]] std::optional<std::byte> carry(ImpairedPath& path, std::byte byte);
   [[nodiscard]] Ack missed();
 
-  std::unique_ptr<BusPort> inner_;
   ImpairedPaths paths_;
   bool is_missed_ = false;   ///< the device did not see its address
   bool is_started_ = false;  ///< the inner bus is in a transaction

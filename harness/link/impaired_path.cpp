@@ -302,4 +302,16 @@ Instant ImpairedPaths::next_due(Instant now, Instant deadline) const noexcept {
       {deadline, out.next_due(now).value_or(deadline), in.next_due(now).value_or(deadline)});
 }
 
+std::size_t ImpairedPaths::take(std::span<std::byte> into, Instant until) {
+  if (taken_.empty()) {
+    if (const auto delivery = in.pop(until)) taken_.add(delivery->bytes);
+  }
+  return taken_.take(into);
+}
+
+PathStatistics& operator+=(PathStatistics& sum, const PathStatistics& part) noexcept {
+  for (const auto& count : path_counts()) sum.*count.place += part.*count.place;
+  return sum;
+}
+
 }  // namespace armjig

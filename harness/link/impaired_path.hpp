@@ -13,6 +13,7 @@
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/time.hpp"
+#include "harness/link/byte_queue.hpp"
 #include "harness/link/impairment.hpp"
 #include "harness/link/random_source.hpp"
 
@@ -49,6 +50,8 @@ struct PathCount {
   std::uint64_t PathStatistics::* place;
 };
 [[nodiscard]] std::span<const PathCount> path_counts() noexcept;
+
+PathStatistics& operator+=(PathStatistics& sum, const PathStatistics& part) noexcept;
 
 struct ImpairmentStatistics {
   PathStatistics out;  ///< towards the device
@@ -183,9 +186,24 @@ struct ImpairedPaths {
     out.drop();
     in.drop();
   }
+
+  /// Whether the link has broken by then, in one direction, hence in both.
+  [[nodiscard]] bool is_broken(Instant time) const noexcept {
+    constexpr auto kBroken = ImpairedPath::End::kBroken;
+    return out.end(time) == kBroken || in.end(time) == kBroken;
+  }
+
+  /// What has come in by `until`, of one delivery and at most as much as there is room for; the
+  /// rest of it stays, also if the path is dropped.
+  [[nodiscard]] std::size_t take(std::span<std::byte> into, Instant until);
+  void forget_taken() noexcept { taken_.clear(); }
+
   [[nodiscard]] ImpairmentStatistics statistics() const noexcept {
     return {out.statistics(), in.statistics()};
   }
+
+ private:
+  ByteQueue taken_;
 };
 
 }  // namespace armjig

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/link/impaired_session.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <tuple>
 #include <utility>
@@ -10,19 +9,18 @@ namespace armjig {
 
 using End = ImpairedPath::End;
 
-ImpairedSession::ImpairedSession(std::unique_ptr<SessionPort> inner, const Impairment& impairment)
-    : inner_{std::move(inner)}, paths_{impairment} {
-  assert(inner_ != nullptr);
-}
+ImpairedSession::ImpairedSession(std::unique_ptr<SessionPort> inner,
+                                 std::shared_ptr<ImpairedPaths> paths)
+    : SessionAround{std::move(inner)}, paths_{std::move(paths)} {}
 
 ImpairedSession::~ImpairedSession() { std::ignore = send_due(Instant::max()); }
 
 Result<void> ImpairedSession::connect(Instant deadline) {
   if (state_ == State::kBroken) return fail(ErrorCode::kBusy);
-  auto connected = inner_->connect(deadline);
+  auto connected = inner().connect(deadline);
   if (!connected) return connected;
-  paths_.out.reopen();
-  paths_.in.reopen();
+  paths_->out.reopen();
+  paths_->in.reopen();
   state_ = State::kOpen;
   return {};
 }
@@ -31,7 +29,7 @@ Result<void> ImpairedSession::send(Bytes segment) {
   const auto time = now();
   break_if_due(time);
   if (state_ != State::kOpen) return fail(ErrorCode::kDisconnected);
-  paths_.out.push(time, segment);
+  paths_->out.push(time, segment);
   if (auto sent = send_due(time); !sent) return sent;
   break_if_due(time);
   if (state_ != State::kOpen) return fail(ErrorCode::kDisconnected);
@@ -45,16 +43,16 @@ Result<SessionPort::Received> ImpairedSession::receive(std::span<std::byte> into
     if (state_ == State::kClosed) return fail(ErrorCode::kDisconnected);
     const auto time = now();  // one for all, or what falls between two would be waited for too long
     if (const auto sent = send_due(time); !sent) return tl::unexpected{sent.error()};
-    if (const auto size = take(into, time); size > 0) return Received{Arrival::kData, size};
+    if (const auto size = paths_->take(into, time); size > 0) return Received{Arrival::kData, size};
     break_if_due(time);
     if (state_ == State::kBroken) {
       state_ = State::kClosed;
       return Received{Arrival::kReset, 0};
     }
-    if (paths_.in.end(time) == End::kClosed) return Received{Arrival::kEnd, 0};
+    if (paths_->in.end(time) == End::kClosed) return Received{Arrival::kEnd, 0};
     // A server may send without end what is delayed beyond the deadline.
     if (has_fetched && time >= deadline) return Received{Arrival::kDeadline, 0};
-    const auto fetched = fetch(paths_.next_due(time, deadline));
+    const auto fetched = fetch(paths_->next_due(time, deadline));
     if (!fetched) return tl::unexpected{fetched.error()};
     if (*fetched) return **fetched;
   }
@@ -63,60 +61,47 @@ Result<SessionPort::Received> ImpairedSession::receive(std::span<std::byte> into
 void ImpairedSession::half_close() {
   if (state_ != State::kOpen) return;
   state_ = State::kHalfClosing;
-  paths_.out.close(now());
+  paths_->out.close(now());
   std::ignore = send_due(now());
 }
 
 void ImpairedSession::close() {
   std::ignore = send_due(Instant::max());
-  inner_->close();
+  inner().close();
   forget(State::kClosed);
 }
 
 void ImpairedSession::reset() {
-  inner_->reset();
+  inner().reset();
   forget(State::kClosed);
 }
 
 Result<void> ImpairedSession::send_due(Instant until) {
-  while (const auto delivery = paths_.out.pop(until)) {
-    if (auto sent = inner_->send(delivery->bytes); !sent) {
-      paths_.out.drop();
+  while (const auto delivery = paths_->out.pop(until)) {
+    if (auto sent = inner().send(delivery->bytes); !sent) {
+      paths_->out.drop();
       return sent;
     }
   }
-  if (state_ == State::kHalfClosing && paths_.out.end(until) == End::kClosed) {
-    inner_->half_close();
+  if (state_ == State::kHalfClosing && paths_->out.end(until) == End::kClosed) {
+    inner().half_close();
     state_ = State::kHalfClosed;
   }
   return {};
 }
 
-/// Requires that `into` is not empty.
-std::size_t ImpairedSession::take(std::span<std::byte> into, Instant until) {
-  if (unread_.empty()) {
-    auto delivery = paths_.in.pop(until);
-    if (!delivery) return 0;
-    unread_ = std::move(delivery->bytes);
-  }
-  const auto size = std::min(into.size(), unread_.size());
-  std::copy_n(unread_.begin(), size, into.begin());
-  unread_.erase(unread_.begin(), unread_.begin() + static_cast<std::ptrdiff_t>(size));
-  return size;
-}
-
 /// Waits for the inner port until `limit`. What it returns is for the caller at once.
 Result<std::optional<SessionPort::Received>> ImpairedSession::fetch(Instant limit) {
-  const auto received = inner_->receive(buffer_, limit);
+  const auto received = inner().receive(buffer_, limit);
   if (!received) return tl::unexpected{received.error()};
   switch (received->arrival) {
     case Arrival::kData:
-      paths_.in.push(now(), Bytes{buffer_}.first(received->size));
+      paths_->in.push(now(), Bytes{buffer_}.first(received->size));
       break;
     case Arrival::kDeadline:
       break;
     case Arrival::kEnd:
-      paths_.in.close(now());
+      paths_->in.close(now());
       break;
     case Arrival::kReset:
       forget(State::kClosed);
@@ -126,16 +111,14 @@ Result<std::optional<SessionPort::Received>> ImpairedSession::fetch(Instant limi
 }
 
 void ImpairedSession::break_if_due(Instant time) {
-  const bool is_broken =
-      paths_.out.end(time) == End::kBroken || paths_.in.end(time) == End::kBroken;
-  if (!is_broken || state_ == State::kClosed || state_ == State::kBroken) return;
-  inner_->reset();
+  if (!paths_->is_broken(time) || state_ == State::kClosed || state_ == State::kBroken) return;
+  inner().reset();
   forget(State::kBroken);
 }
 
 void ImpairedSession::forget(State next) {
-  paths_.drop();
-  unread_.clear();
+  paths_->drop();
+  paths_->forget_taken();
   state_ = next;
 }
 

@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "harness/link/impaired_path.hpp"
-#include "harness/link/session_port.hpp"
+#include "harness/link/port_around.hpp"
 
 namespace armjig {
 
@@ -23,10 +23,13 @@ namespace armjig {
 /// A disconnect throws the connection away on both sides: the server sees a reset, and so does
 /// `receive`, once. `connect` then begins a new one; random events and counts go on, the bytes of
 /// `disconnect_after` count anew.
-class ImpairedSession final : public SessionPort {
+class ImpairedSession final : public SessionAround {
  public:
-  /// Requires `inner`, without a connection.
-  ImpairedSession(std::unique_ptr<SessionPort> inner, const Impairment& impairment);
+  /// Requires `inner`, without a connection. `paths` are for this session alone, and tell others
+  /// their counts.
+  ImpairedSession(std::unique_ptr<SessionPort> inner, std::shared_ptr<ImpairedPaths> paths);
+  ImpairedSession(std::unique_ptr<SessionPort> inner, const Impairment& impairment)
+      : ImpairedSession{std::move(inner), std::make_shared<ImpairedPaths>(impairment)} {}
 
   /// Hands over at once what is still on its way out.
   ~ImpairedSession() override;
@@ -49,10 +52,7 @@ class ImpairedSession final : public SessionPort {
   /// What is on its way is lost.
   void reset() override;
 
-  [[nodiscard]] Instant now() const override { return inner_->now(); }
-  [[nodiscard]] std::optional<int> descriptor() const override { return inner_->descriptor(); }
-
-  [[nodiscard]] ImpairmentStatistics statistics() const noexcept { return paths_.statistics(); }
+  [[nodiscard]] ImpairmentStatistics statistics() const noexcept { return paths_->statistics(); }
 
  private:
   enum class State : std::uint8_t {
@@ -65,15 +65,12 @@ class ImpairedSession final : public SessionPort {
   static constexpr std::size_t kMostAtOnce = 4096;
 
   [[nodiscard]] Result<void> send_due(Instant until);
-  [[nodiscard]] std::size_t take(std::span<std::byte> into, Instant until);
   [[nodiscard]] Result<std::optional<Received>> fetch(Instant limit);
   void break_if_due(Instant time);
   void forget(State next);
 
-  std::unique_ptr<SessionPort> inner_;
-  ImpairedPaths paths_;
+  std::shared_ptr<ImpairedPaths> paths_;
   State state_{};
-  std::vector<std::byte> unread_;  ///< of a delivery that was larger than `into`
   std::array<std::byte, kMostAtOnce> buffer_{};
 };
 

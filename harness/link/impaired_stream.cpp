@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/link/impaired_stream.hpp"
 
-#include <algorithm>
-#include <cassert>
 #include <tuple>
 #include <utility>
 
 namespace armjig {
 
 ImpairedStream::ImpairedStream(std::unique_ptr<StreamPort> inner, const Impairment& impairment)
-    : inner_{std::move(inner)}, paths_{impairment} {
-  assert(inner_ != nullptr);
-}
+    : StreamAround{std::move(inner)}, paths_{impairment} {}
 
 ImpairedStream::~ImpairedStream() {
   if (!failure_) std::ignore = send_due(Instant::max());
@@ -31,7 +27,9 @@ Result<std::size_t> ImpairedStream::read(std::span<std::byte> into, Instant dead
   for (bool has_fetched = false;; has_fetched = true) {
     const auto time = now();  // one for all, or what falls between two would be waited for too long
     if (const auto sent = send_due(time); !sent && !failure_) return tl::unexpected{sent.error()};
-    if (const auto size = take(into, failure_ ? Instant::max() : time); size > 0) return size;
+    if (const auto size = paths_.take(into, failure_ ? Instant::max() : time); size > 0) {
+      return size;
+    }
     if (const auto error = failure(time)) return tl::unexpected{*error};
     // A real device may send without end what is delayed beyond the deadline.
     if (has_fetched && time >= deadline) return 0;
@@ -42,27 +40,14 @@ Result<std::size_t> ImpairedStream::read(std::span<std::byte> into, Instant dead
 
 Result<void> ImpairedStream::send_due(Instant until) {
   while (const auto delivery = paths_.out.pop(until)) {
-    if (const auto sent = inner_->write(delivery->bytes); !sent) return failed(sent.error());
+    if (const auto sent = inner().write(delivery->bytes); !sent) return failed(sent.error());
   }
   return {};
 }
 
-/// Requires that `into` is not empty.
-std::size_t ImpairedStream::take(std::span<std::byte> into, Instant until) {
-  if (unread_.empty()) {
-    auto delivery = paths_.in.pop(until);
-    if (!delivery) return 0;
-    unread_ = std::move(delivery->bytes);
-  }
-  const auto size = std::min(into.size(), unread_.size());
-  std::copy_n(unread_.begin(), size, into.begin());
-  unread_.erase(unread_.begin(), unread_.begin() + static_cast<std::ptrdiff_t>(size));
-  return size;
-}
-
 /// Waits for bytes of the inner port until `limit`.
 Result<void> ImpairedStream::fetch(Instant limit) {
-  const auto size = inner_->read(buffer_, limit);
+  const auto size = inner().read(buffer_, limit);
   if (!size) return failed(size.error());
   paths_.in.push(now(), Bytes{buffer_}.first(*size));
   return {};
@@ -70,10 +55,7 @@ Result<void> ImpairedStream::fetch(Instant limit) {
 
 /// Why nothing works any more, if so.
 std::optional<Error> ImpairedStream::failure(Instant time) {
-  const auto is_broken = [time](const ImpairedPath& path) {
-    return path.end(time) == ImpairedPath::End::kBroken;
-  };
-  if (!failure_ && (is_broken(paths_.out) || is_broken(paths_.in))) {
+  if (!failure_ && paths_.is_broken(time)) {
     paths_.drop();
     failure_ = Error{ErrorCode::kDisconnected};
   }

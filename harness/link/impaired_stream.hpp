@@ -6,10 +6,9 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "harness/link/impaired_path.hpp"
-#include "harness/link/stream_port.hpp"
+#include "harness/link/port_around.hpp"
 
 namespace armjig {
 
@@ -26,7 +25,7 @@ namespace armjig {
 ///
 /// The link breaks for both directions at once: what is on its way in the other one is lost, the
 /// inner port stays open but is no longer used, and all calls fail with `kDisconnected`.
-class ImpairedStream final : public StreamPort {
+class ImpairedStream final : public StreamAround {
  public:
   /// Requires `inner`.
   ImpairedStream(std::unique_ptr<StreamPort> inner, const Impairment& impairment);
@@ -43,27 +42,18 @@ class ImpairedStream final : public StreamPort {
   /// the error.
   [[nodiscard]] Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override;
 
-  [[nodiscard]] Instant now() const override { return inner_->now(); }
-  [[nodiscard]] std::optional<int> descriptor() const override { return inner_->descriptor(); }
-  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
-    return inner_->touch(input, value);
-  }
-
   [[nodiscard]] ImpairmentStatistics statistics() const noexcept { return paths_.statistics(); }
 
  private:
   static constexpr std::size_t kMostAtOnce = 4096;
 
   [[nodiscard]] Result<void> send_due(Instant until);
-  [[nodiscard]] std::size_t take(std::span<std::byte> into, Instant until);
   [[nodiscard]] Result<void> fetch(Instant limit);
   [[nodiscard]] std::optional<Error> failure(Instant time);
   [[nodiscard]] tl::unexpected<Error> failed(const Error& error);
 
-  std::unique_ptr<StreamPort> inner_;
   ImpairedPaths paths_;
-  std::vector<std::byte> unread_;  ///< of a delivery that was larger than `into`
-  std::optional<Error> failure_;   ///< for good
+  std::optional<Error> failure_;  ///< for good
   std::array<std::byte, kMostAtOnce> buffer_{};
 };
 

@@ -13,27 +13,28 @@
 namespace armjig {
 
 /// A stream to an emulated device in the same process, on virtual time: reading advances the device
-/// to whatever comes first, its next bytes or the deadline.
-template <EmulatedStream Device>
+/// to whatever comes first, its next bytes or the deadline. `Held` is an `EmulatedStream`, or a
+/// pointer to something like it.
+template <class Held>
 class MemoryStream final : public StreamPort {
  public:
-  explicit MemoryStream(Device device) : device_{std::move(device)} {}
+  explicit MemoryStream(Held held) : held_{std::move(held)} {}
 
   Result<void> write(Bytes bytes) override {
-    device_.receive(now_, bytes);
+    device().receive(now_, bytes);
     return {};
   }
 
   Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
     while (unread_.empty()) {
-      const auto event = device_.next_event();
+      const auto event = device().next_event();
       const bool is_due = event && *event <= deadline;
       now_ = std::max(now_, is_due ? *event : deadline);
-      device_.advance_to(now_);
-      for (const auto& sent : device_.sent()) {
+      device().advance_to(now_);
+      for (const auto& sent : device().sent()) {
         unread_.insert(unread_.end(), sent.bytes.begin(), sent.bytes.end());
       }
-      device_.clear_sent();
+      device().clear_sent();
       if (!is_due && unread_.empty()) return 0;
     }
     const auto taken = std::min(into.size(), unread_.size());
@@ -46,18 +47,18 @@ class MemoryStream final : public StreamPort {
 
   /// For devices that have `set_input(time, name, value)`.
   [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
-    if constexpr (requires { device_.set_input(now_, input, value); }) {
-      return device_.set_input(now_, input, value);
+    if constexpr (requires { device().set_input(now_, input, value); }) {
+      return device().set_input(now_, input, value);
     } else {
       return false;
     }
   }
 
   /// To look at the device and to touch it. Its time is `now()`.
-  [[nodiscard]] Device& device() noexcept { return device_; }
+  [[nodiscard]] auto& device() noexcept { return device_in(held_); }
 
  private:
-  Device device_;
+  Held held_;
   Instant now_{};
   std::vector<std::byte> unread_;
 };

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/link/real_streams.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <sys/file.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -21,42 +19,6 @@ namespace {
 using namespace std::chrono_literals;
 constexpr Duration kConnectPatience = 3s;
 
-using Put = Result<void> (*)(const Descriptor&, Bytes, const Stopwatch&, Duration) noexcept;
-
-/// A terminal or a socket; they differ only in how bytes are written.
-class DescriptorStream final : public StreamPort {
- public:
-  DescriptorStream(Descriptor descriptor, Put put) noexcept
-      : descriptor_{std::move(descriptor)}, put_{put} {}
-
-  Result<void> write(Bytes bytes) override {
-    return put_(descriptor_, bytes, clock_, kWritePatience);
-  }
-
-  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
-    if (into.empty()) return 0;
-    while (true) {
-      const auto size = ::read(descriptor_.value(), into.data(), into.size());
-      if (size > 0) return static_cast<std::size_t>(size);
-      if (size == 0) return fail(ErrorCode::kDisconnected);
-      if (errno == ETIMEDOUT) return fail(ErrorCode::kDisconnected, errno);
-      if (errno != EAGAIN && errno != EINTR) return tl::unexpected{error_from_errno(errno)};
-      const auto is_ready = wait_for(descriptor_, Readiness::kReadable, clock_, deadline);
-      if (!is_ready) return tl::unexpected{is_ready.error()};
-      if (!*is_ready) return 0;
-    }
-  }
-
-  [[nodiscard]] Instant now() const override { return clock_.now(); }
-
-  [[nodiscard]] std::optional<int> descriptor() const override { return descriptor_.value(); }
-
- private:
-  Descriptor descriptor_;
-  Put put_;
-  Stopwatch clock_;
-};
-
 /// Where a symbolic link leads; empty for everything else.
 std::string link_target(const std::string& path) {
   std::array<char, 4096> text{};
@@ -73,43 +35,52 @@ std::string hint_for_absent(const std::string& path) {
   return "is the emulator running, is the board plugged in?";
 }
 
-auto not_a_terminal(const std::string& path) {
-  return problem(ErrorCode::kBadTarget, path,
-                 "it is not a terminal; give the path that 'armjig emulate' prints");
+tl::unexpected<Problem> problem_of_pty(const std::string& path, const Error& error) {
+  return problem_of_open(
+      path, error,
+      {.absent = hint_for_absent(path),
+       .not_allowed = "your user may not open it: 'ls -l' shows its group, often dialout",
+       .busy = "close that program; 'fuser' names it",
+       .gone = "is the emulator still running?",
+       .wrong_kind = "it is not a terminal; give the path that 'armjig emulate' prints"});
 }
 
-tl::unexpected<Problem> problem_of_open(const std::string& path, int error_number) {
-  switch (error_number) {
-    case ENOENT:
-    case ENOTDIR:
-    case ENXIO:
-    case ENODEV:
-      return problem(ErrorCode::kNotFound, path, hint_for_absent(path));
-    case EACCES:
-    case EPERM:
-      return problem(ErrorCode::kNoPermission, path,
-                     "your user may not open it: 'ls -l' shows its group, often dialout");
-    case EBUSY:
-    case EWOULDBLOCK:
-      return problem(ErrorCode::kBusy, path, "close that program; 'fuser' names it");
-    case EISDIR:
-      return not_a_terminal(path);
-    case EIO:
-      return problem(ErrorCode::kDisconnected, path, "is the emulator still running?");
-    default:
-      return problem(ErrorCode::kSystem, path, std::generic_category().message(error_number));
+/// The names of speeds in termios.
+constexpr std::pair<std::uint32_t, speed_t> kSpeeds[] = {
+    {1200, B1200},         {2400, B2400},         {4800, B4800},         {9600, B9600},
+    {19'200, B19200},      {38'400, B38400},      {57'600, B57600},      {115'200, B115200},
+    {230'400, B230400},    {460'800, B460800},    {500'000, B500000},    {576'000, B576000},
+    {921'600, B921600},    {1'000'000, B1000000}, {1'152'000, B1152000}, {1'500'000, B1500000},
+    {2'000'000, B2000000}, {2'500'000, B2500000}, {3'000'000, B3000000}, {3'500'000, B3500000},
+    {4'000'000, B4000000}};
+
+void set_line(termios& mode, const SerialLine& line) noexcept {
+  for (const auto& [baud, name] : kSpeeds) {
+    if (baud == line.baud) ::cfsetspeed(&mode, name);
   }
+  if (line.parity != Parity::kNone) mode.c_cflag |= PARENB;
+  if (line.parity == Parity::kOdd) mode.c_cflag |= PARODD;
+  if (line.stop_bits == 2) mode.c_cflag |= CSTOPB;
+}
+
+/// A pseudo-terminal has no parity. The C library calls that an error where nothing else changes.
+bool set_mode(int fd, termios mode) noexcept {
+  if (::tcsetattr(fd, TCSANOW, &mode) == 0) return true;
+  mode.c_cflag &= ~static_cast<tcflag_t>(PARENB | PARODD);
+  return errno == EINVAL && ::tcsetattr(fd, TCSANOW, &mode) == 0;
 }
 
 /// No echo, no line editing, no flow control: bytes as they are.
-bool set_raw(int fd) noexcept {
+bool set_raw(int fd, const SerialLine& line) noexcept {
   termios mode{};
   if (::tcgetattr(fd, &mode) != 0) return false;
   ::cfmakeraw(&mode);
+  mode.c_cflag &= ~static_cast<tcflag_t>(PARODD | CSTOPB);
+  set_line(mode, line);
   mode.c_cflag |= CLOCAL | CREAD;
   mode.c_cc[VMIN] = 1;
   mode.c_cc[VTIME] = 0;
-  return ::tcsetattr(fd, TCSANOW, &mode) == 0 && ::tcflush(fd, TCIFLUSH) == 0;
+  return set_mode(fd, mode) && ::tcflush(fd, TCIFLUSH) == 0;
 }
 
 auto problem_of_connect(std::string_view address, const Error& error) {
@@ -130,13 +101,11 @@ auto problem_of_connect(std::string_view address, const Error& error) {
 
 }  // namespace
 
-Outcome<std::unique_ptr<StreamPort>> open_pty(const std::string& path) {
-  Descriptor terminal{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
-  if (!terminal.is_open()) return problem_of_open(path, errno);
-  if (::isatty(terminal.value()) == 0) return not_a_terminal(path);
-  if (::flock(terminal.value(), LOCK_EX | LOCK_NB) != 0) return problem_of_open(path, errno);
-  if (!set_raw(terminal.value())) return problem_of_open(path, errno);
-  return std::make_unique<DescriptorStream>(std::move(terminal), &write_all);
+Outcome<std::unique_ptr<StreamPort>> open_pty(const std::string& path, SerialLine line) {
+  auto terminal = open_terminal(path);
+  if (!terminal) return problem_of_pty(path, terminal.error());
+  if (!set_raw(terminal->value(), line)) return problem_of_pty(path, error_from_errno(errno));
+  return std::make_unique<DescriptorStream>(*std::move(terminal), &write_all);
 }
 
 Outcome<std::unique_ptr<StreamPort>> open_tcp_stream(std::string_view address) {

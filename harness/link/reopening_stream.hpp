@@ -12,7 +12,7 @@ namespace armjig {
 
 /// A real port that is opened again when its device has gone: a cable pulled, a board reset, an
 /// emulator restarted. While it is away, what is written is lost and nothing comes. Its time goes
-/// on without a jump. It answers no descriptor, because that changes: who has to stop an arm
+/// on without a jump. It has no lifeline, because its file changes: who has to stop an arm
 /// through one (`GuardedStream`) can not use it.
 class ReopeningStream final : public StreamPort {
  public:

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/link/serial_stream.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <libserialport.h>
-#include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <climits>
@@ -69,48 +70,6 @@ SerialPort description_of(const sp_port* port) {
   return found;
 }
 
-/// A port that libserialport has set up; it shares its lock and its modes with no other open file.
-class SerialStream final : public StreamPort {
- public:
-  explicit SerialStream(Descriptor port) noexcept : port_{std::move(port)} {}
-
-  Result<void> write(Bytes bytes) override {
-    auto written = write_all(port_, bytes, clock_, kWritePatience);
-    if (!written) return tl::unexpected{in_use(written.error())};
-    return written;
-  }
-
-  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
-    if (into.empty()) return 0;
-    while (true) {
-      const auto is_ready = wait_for(port_, Readiness::kReadable, clock_, deadline);
-      if (!is_ready) return tl::unexpected{is_ready.error()};
-      if (!*is_ready) return 0;
-      // libserialport lets `read` answer 0 when nothing has come; but something has, so it is gone.
-      const auto size = ::read(port_.value(), into.data(), into.size());
-      if (size > 0) return static_cast<std::size_t>(size);
-      if (size == 0) return fail(ErrorCode::kDisconnected);
-      if (errno != EAGAIN && errno != EINTR) {
-        return tl::unexpected{in_use(error_from_errno(errno))};
-      }
-    }
-  }
-
-  [[nodiscard]] Instant now() const override { return clock_.now(); }
-
-  [[nodiscard]] std::optional<int> descriptor() const override { return port_.value(); }
-
- private:
-  /// A port that was there and is not any more was unplugged.
-  static Error in_use(Error error) noexcept {
-    if (error.code == ErrorCode::kNotFound) error.code = ErrorCode::kDisconnected;
-    return error;
-  }
-
-  Descriptor port_;
-  Stopwatch clock_;
-};
-
 /// libserialport knows ports by the names that the kernel gives them. The name to which the links
 /// at `path` lead; `path` itself if they lead to none.
 std::string kernel_name(const std::string& path) {
@@ -126,63 +85,60 @@ std::string kernel_name(const std::string& path) {
   return path;
 }
 
-auto not_a_serial_port(const std::string& path) {
-  std::error_code ignored;
-  const bool is_pty = fs::canonical(path, ignored).native().starts_with("/dev/pts/");
-  return problem(ErrorCode::kBadTarget, path,
-                 is_pty ? fmt::format("it is a pseudo-terminal: write pty:{}", path)
-                        : "it is not a serial port; 'armjig devices' lists them");
+bool is_pseudo_terminal(const std::string& path) {
+  constexpr unsigned kFirstMajor = 136;  // Linux, Documentation/admin-guide/devices.txt
+  constexpr unsigned kLastMajor = 143;
+  struct stat status{};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISCHR(status.st_mode)) return false;
+  const auto kind = major(status.st_rdev);
+  return kind >= kFirstMajor && kind <= kLastMajor;
 }
 
-tl::unexpected<Problem> problem_of_open(const std::string& path, int error_number) {
-  const auto error = error_from_errno(error_number);
-  switch (error.code) {
-    case ErrorCode::kNotFound:
-      return problem(error.code, path,
-                     "is the board plugged in and switched on? 'armjig devices' lists what is");
-    case ErrorCode::kNoPermission:
-      return problem(error.code, path,
-                     "serial ports belong to the group dialout: run 'sudo adduser $USER dialout' "
-                     "and log in again; 'armjig doctor' tells more");
-    case ErrorCode::kBusy:
-      return problem(error.code, path,
-                     "close that program, 'fuser' names it; if an armjig was killed just now, "
-                     "wait a second until its arm is stopped");
-    case ErrorCode::kDisconnected:
-      return problem(error.code, path, "was it unplugged just now?");
-    default:
-      return problem(ErrorCode::kSystem, path, std::generic_category().message(error_number));
-  }
+tl::unexpected<Problem> problem_of_port(const std::string& path, const Error& error) {
+  return problem_of_open(
+      path, error,
+      {.absent = "is the board plugged in and switched on? 'armjig devices' lists what is",
+       .not_allowed = "serial ports belong to the group dialout: run 'sudo adduser $USER dialout' "
+                      "and log in again; 'armjig doctor' tells more",
+       .busy = "close that program, 'fuser' names it; if an armjig was killed just now, wait a "
+               "second until its arm is stopped",
+       .gone = "was it unplugged just now?",
+       .wrong_kind = is_pseudo_terminal(path)
+                         ? fmt::format("it is a pseudo-terminal: write pty:{}", path)
+                         : "it is not a serial port; 'armjig devices' lists them"});
 }
 
 tl::unexpected<Problem> problem_of_set_up(const SerialAddress& address, int error_number) {
   if (error_number != EINVAL && error_number != ENOTSUP) {
-    return problem_of_open(address.path, error_number);
+    return problem_of_port(address.path, error_from_errno(error_number));
   }
-  return problem(ErrorCode::kUnsupported, address.path,
-                 fmt::format("it cannot be set to {} baud", address.baud));
+  return problem(
+      ErrorCode::kUnsupported, address.path,
+      fmt::format("it cannot be set to {} baud, {} parity and {} stop bits", address.line.baud,
+                  to_string(address.line.parity), address.line.stop_bits));
 }
 
-/// 8N1 without flow control; DTR and RTS on, without which some boards stay silent.
-sp_return configure(sp_port* port, std::uint32_t baud) noexcept {
+/// 8 bits without flow control; DTR and RTS on, without which some boards stay silent.
+sp_return configure(sp_port* port, const SerialLine& line) noexcept {
+  constexpr std::array kParities{SP_PARITY_NONE, SP_PARITY_ODD, SP_PARITY_EVEN};
   sp_port_config* made = nullptr;
   if (const auto answer = ::sp_new_config(&made); answer != SP_OK) return answer;
   const std::unique_ptr<sp_port_config, FreeConfig> config{made};
-  ::sp_set_config_baudrate(made, static_cast<int>(baud));
+  ::sp_set_config_baudrate(made, static_cast<int>(line.baud));
   ::sp_set_config_bits(made, 8);
-  ::sp_set_config_parity(made, SP_PARITY_NONE);
-  ::sp_set_config_stopbits(made, 1);
+  ::sp_set_config_parity(made, kParities[static_cast<std::size_t>(line.parity)]);
+  ::sp_set_config_stopbits(made, line.stop_bits);
   ::sp_set_config_flowcontrol(made, SP_FLOWCONTROL_NONE);
   return ::sp_set_config(port, made);
 }
 
 /// Answers an errno, 0 for success. The modes belong to the port and stay; the library's file is
 /// closed again.
-int set_up(sp_port* port, std::uint32_t baud) noexcept {
+int set_up(sp_port* port, const SerialLine& line) noexcept {
   if (const auto answer = ::sp_open(port, SP_MODE_READ_WRITE); answer != SP_OK) {
     return errno_of(answer);
   }
-  const int error_number = errno_of(configure(port, baud));
+  const int error_number = errno_of(configure(port, line));
   int file = -1;
   ::sp_get_port_handle(port, &file);
   ::ioctl(file, TIOCEXCL);  // until it is closed nobody else may open it, but for root
@@ -226,15 +182,15 @@ Outcome<std::vector<SerialPort>> list_serial_ports() {
   return ports;
 }
 
-Outcome<SerialAddress> parse_serial_address(std::string_view text) {
-  SerialAddress address;
+Outcome<SerialAddress> parse_serial_address(std::string_view text, SerialLine usual) {
+  SerialAddress address{.line = usual};
   const auto comma = text.rfind(',');
   address.path = text.substr(0, comma);
   if (comma != std::string_view::npos) {
     const auto digits = text.substr(comma + 1);
     const auto* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, address.baud);
-    const bool is_speed = address.baud > 0 && address.baud <= INT_MAX;
+    const auto [stop, error] = std::from_chars(digits.data(), end, address.line.baud);
+    const bool is_speed = address.line.baud > 0 && address.line.baud <= INT_MAX;
     if (error != std::errc{} || stop != end || !is_speed) address.path.clear();
   }
   if (!address.path.empty()) return address;
@@ -246,21 +202,17 @@ Outcome<std::unique_ptr<StreamPort>> open_serial(const SerialAddress& address) {
   const auto& path = address.path;
   // A file of our own: that of the library would be inherited by programs that we start, and it
   // has to be locked before anything about the port is changed.
-  Descriptor port{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
-  if (!port.is_open()) return problem_of_open(path, errno);
-  if (::isatty(port.value()) == 0) return not_a_serial_port(path);
-  if (::flock(port.value(), LOCK_EX | LOCK_NB) != 0) {
-    return problem_of_open(path, errno == EWOULDBLOCK ? EBUSY : errno);
-  }
+  auto port = open_terminal(path);
+  if (!port) return problem_of_port(path, port.error());
   sp_port* named = nullptr;
   if (::sp_get_port_by_name(kernel_name(path).c_str(), &named) != SP_OK) {
-    return not_a_serial_port(path);
+    return problem_of_port(path, {ErrorCode::kBadTarget});
   }
   const PortHandle handle{named};
-  if (const auto error_number = set_up(named, address.baud)) {
+  if (const auto error_number = set_up(named, address.line)) {
     return problem_of_set_up(address, error_number);
   }
-  return std::make_unique<SerialStream>(std::move(port));
+  return std::make_unique<DescriptorStream>(*std::move(port), &write_all);
 }
 
 }  // namespace armjig

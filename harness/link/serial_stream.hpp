@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/core/error.hpp"
+#include "harness/link/serial_line.hpp"
 #include "harness/link/stream_port.hpp"
 
 /// Serial ports of this machine: USB boards, adapters, built-in ones. Not pseudo-terminals, which
@@ -44,26 +45,24 @@ struct SerialPort {
 /// All that are there now, by path. Problems: `kSystem`.
 [[nodiscard]] Outcome<std::vector<SerialPort>> list_serial_ports();
 
-/// Where a serial port is and how fast.
+/// Where a serial port is and how it is set.
 struct SerialAddress {
-  /// What the PAROL6 board is opened with; a USB port takes any number and ignores it.
-  static constexpr std::uint32_t kUsualBaud = 3'000'000;
-
   std::string path;  ///< may be a symbolic link, as in /dev/serial/by-id
-  std::uint32_t baud = kUsualBaud;
+  SerialLine line{};
 
   friend bool operator==(const SerialAddress&, const SerialAddress&) = default;
 };
 
-/// Reads `PATH` or `PATH,BAUD`. Problems: `kBadTarget`.
-[[nodiscard]] Outcome<SerialAddress> parse_serial_address(std::string_view text);
+/// Reads `PATH` or `PATH,BAUD`; `usual` has what it does not say. Problems: `kBadTarget`.
+[[nodiscard]] Outcome<SerialAddress> parse_serial_address(std::string_view text,
+                                                          SerialLine usual = {});
 
-/// Opens a port with 8 data bits, no parity, 1 stop bit, no flow control; what came before is
-/// thrown away. Its time is monotonic since opening; `write` gives up with `kTimedOut` when the
-/// other side takes nothing for two seconds; a port that is unplugged is `kDisconnected`. The port
-/// is locked against other programs that lock it as well, and against all that are not root's.
-/// Problems: `kNotFound`, `kNoPermission`, `kBusy`, `kBadTarget` (not a serial port),
-/// `kUnsupported` (not at that speed), `kDisconnected`, `kSystem`.
+/// Opens a port and sets its line; what came before is thrown away. Its time is monotonic since
+/// opening; `write` gives up with `kTimedOut` when the other side takes nothing for two seconds; a
+/// port that is unplugged is `kDisconnected`. The port is locked against other programs that lock
+/// it as well, and against all that are not root's. Problems: `kNotFound`, `kNoPermission`,
+/// `kBusy`, `kBadTarget` (not a serial port), `kUnsupported` (not with that speed, parity or stop
+/// bits), `kDisconnected`, `kSystem`.
 [[nodiscard]] Outcome<std::unique_ptr<StreamPort>> open_serial(const SerialAddress& address);
 
 }  // namespace armjig

@@ -3,19 +3,18 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
-#include "harness/core/time.hpp"
+#include "harness/link/endpoint.hpp"
 
 namespace armjig {
 
 /// Connections to a server, as TCP has them: what a byte stream lacks is that they begin, end in
 /// more than one way, and that what was written at once may matter as a segment. One connection at
-/// a time; a second one needs a second port. Time as in `StreamPort`.
-class SessionPort {
+/// a time; a second one needs a second port.
+class SessionPort : public Endpoint {
  public:
   /// How reading ended.
   enum class Arrival : std::uint8_t {
@@ -28,11 +27,6 @@ class SessionPort {
     Arrival arrival{};
     std::size_t size{};
   };
-
-  SessionPort() = default;
-  SessionPort(const SessionPort&) = delete;
-  SessionPort& operator=(const SessionPort&) = delete;
-  virtual ~SessionPort() = default;
 
   /// Begins a connection. Errors: `kRefused`, `kTimedOut`, `kBusy` (there is one already).
   [[nodiscard]] virtual Result<void> connect(Instant deadline) = 0;
@@ -49,12 +43,6 @@ class SessionPort {
   virtual void close() = 0;
   /// Throws the connection away.
   virtual void reset() = 0;
-
-  [[nodiscard]] virtual Instant now() const = 0;
-
-  /// The socket of a real connection, for what has to outlive this process; none in memory or
-  /// without a connection.
-  [[nodiscard]] virtual std::optional<int> descriptor() const { return std::nullopt; }
 };
 
 }  // namespace armjig

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cerrno>
+#include <thread>
 #include <utility>
 
 #include "harness/link/descriptor.hpp"
@@ -78,8 +79,8 @@ class TcpSession final : public SessionPort {
   }
 
   [[nodiscard]] Instant now() const override { return clock_.now(); }
-  [[nodiscard]] std::optional<int> descriptor() const override {
-    return socket_.is_open() ? std::optional{socket_.value()} : std::nullopt;
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    return socket_.is_open() ? std::optional{Lifeline{socket_.value(), send_last}} : std::nullopt;
   }
 
  private:
@@ -107,12 +108,37 @@ class TcpSession final : public SessionPort {
   bool was_reset_ = false;
 };
 
-}  // namespace
+class TcpServer final : public SessionSource {
+ public:
+  explicit TcpServer(TcpAddress address) : address_{std::move(address)} {}
 
-Outcome<std::unique_ptr<SessionPort>> make_tcp_session(std::string_view address) {
+  std::unique_ptr<SessionPort> make_port() override {
+    return std::make_unique<TcpSession>(address_);
+  }
+  [[nodiscard]] Instant now() const override { return clock_.now(); }
+  void pause(Duration duration) override { std::this_thread::sleep_for(duration); }
+
+ private:
+  TcpAddress address_;
+  Stopwatch clock_;
+};
+
+/// `Made` at an address.
+template <class Made, class Base>
+Outcome<std::unique_ptr<Base>> made_at(std::string_view address) {
   auto where = parse_tcp_address(address);
   if (!where) return tl::unexpected{where.error()};
-  return std::make_unique<TcpSession>(std::move(*where));
+  return std::make_unique<Made>(*std::move(where));
+}
+
+}  // namespace
+
+Outcome<std::unique_ptr<SessionSource>> open_tcp_server(std::string_view address) {
+  return made_at<TcpServer, SessionSource>(address);
+}
+
+Outcome<std::unique_ptr<SessionPort>> make_tcp_session(std::string_view address) {
+  return made_at<TcpSession, SessionPort>(address);
 }
 
 }  // namespace armjig

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "harness/core/error.hpp"
-#include "harness/link/session_port.hpp"
+#include "harness/link/session_source.hpp"
 
 namespace armjig {
 
@@ -15,5 +15,8 @@ namespace armjig {
 /// nothing for two seconds. After the server's end `receive` keeps saying `kEnd`. Problems:
 /// `kBadTarget`.
 [[nodiscard]] Outcome<std::unique_ptr<SessionPort>> make_tcp_session(std::string_view address);
+
+/// As many of them as are wanted. Problems: `kBadTarget`.
+[[nodiscard]] Outcome<std::unique_ptr<SessionSource>> open_tcp_server(std::string_view address);
 
 }  // namespace armjig

@@ -25,6 +25,11 @@ class RealBus : public TransactionBus {
   void wait_until(Instant time) final;
   [[nodiscard]] Instant now() const final { return clock_.now(); }
 
+ protected:
+  /// Whether a transaction has messages, and neither too many nor too long ones.
+  [[nodiscard]] static bool can_do(std::span<const BusMessage> messages, std::size_t most,
+                                   std::size_t longest) noexcept;
+
  private:
   Stopwatch clock_;
 };

@@ -3,6 +3,9 @@
 
 #include <fmt/core.h>
 #include <libusb.h>
+#include <linux/usbdevice_fs.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +16,7 @@ namespace armjig {
 namespace {
 
 constexpr unsigned kPatienceMs = 1000;
+constexpr unsigned kLastPatienceMs = 50;  // the next one may come through
 
 struct ExitContext {
   void operator()(libusb_context* context) const noexcept { libusb_exit(context); }
@@ -64,6 +68,16 @@ class LibusbControl final : public UsbControl {
     // libusb has one function for both directions; it does not write to what goes out.
     return transfer(LIBUSB_ENDPOINT_OUT, request,
                     {const_cast<std::byte*>(bytes.data()), bytes.size()});
+  }
+  /// libusb waits until the files of devices are writable; this context has one device.
+  [[nodiscard]] std::optional<int> descriptor() const override {
+    const auto** all = libusb_get_pollfds(context_.get());
+    std::optional<int> found;
+    for (const auto** one = all; one != nullptr && *one != nullptr; ++one) {
+      if ((*one)->events == POLLOUT) found = (*one)->fd;
+    }
+    libusb_free_pollfds(all);
+    return found;
   }
 
  private:
@@ -130,6 +144,19 @@ std::string names_of(const std::vector<Candidate>& candidates) {
 }
 
 }  // namespace
+
+void send_last_request(int descriptor, UsbRequest request, Bytes bytes) noexcept {
+  usbdevfs_ctrltransfer transfer{.bRequestType = int{LIBUSB_ENDPOINT_OUT} |
+                                                 LIBUSB_REQUEST_TYPE_VENDOR |
+                                                 LIBUSB_RECIPIENT_INTERFACE,
+                                 .bRequest = request.request,
+                                 .wValue = request.value,
+                                 .wIndex = request.index,
+                                 .wLength = static_cast<std::uint16_t>(bytes.size()),
+                                 .timeout = kLastPatienceMs,
+                                 .data = const_cast<std::byte*>(bytes.data())};
+  ::ioctl(descriptor, USBDEVFS_CONTROL, &transfer);
+}
 
 Outcome<std::unique_ptr<UsbControl>> open_usb_control(std::span<const UsbNumbers> numbers,
                                                       std::string_view serial_number,

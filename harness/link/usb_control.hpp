@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,7 +34,13 @@ class UsbControl {
   [[nodiscard]] virtual Result<std::size_t> read(UsbRequest request, std::span<std::byte> into) = 0;
   /// Bytes that the device took.
   [[nodiscard]] virtual Result<std::size_t> write(UsbRequest request, Bytes bytes) = 0;
+  /// The file of the device, for `send_last_request`; none if it is no real one.
+  [[nodiscard]] virtual std::optional<int> descriptor() const { return std::nullopt; }
 };
+
+/// Writes through the file of a device that libusb has opened, in a process that inherits it: what
+/// was claimed belongs to the file. Does nothing but a system call, and may fail.
+void send_last_request(int descriptor, UsbRequest request, Bytes bytes) noexcept;
 
 /// The numbers by which a kind of device is told.
 struct UsbNumbers {

@@ -7,11 +7,9 @@
 namespace armjig {
 namespace {
 
-using Form = std::string (*)(const Report&);
-
-Outcome<void> write_form(const Report& report, const std::string& path, Form form) {
-  return path.empty() ? Outcome<void>{} : write_file(path, form(report));
-}
+constexpr std::array kForms{
+    ReportForm{"json", "JSON", to_json}, ReportForm{"html", "a page", to_html},
+    ReportForm{"junit", "JUnit XML", to_junit}, ReportForm{"sarif", "SARIF", to_sarif}};
 
 }  // namespace
 
@@ -59,11 +57,15 @@ std::string_view to_string(Conclusion conclusion) noexcept {
 }
 
 Outcome<void> write_files(const Report& report, const ReportFiles& files) {
-  return write_form(report, files.json, to_json)
-      .and_then([&] { return write_form(report, files.html, to_html); })
-      .and_then([&] { return write_form(report, files.junit, to_junit); })
-      .and_then([&] { return write_form(report, files.sarif, to_sarif); });
+  for (const auto& form : kForms) {
+    const auto file = files.find(form.name);
+    if (file == files.end() || file->second.empty()) continue;
+    if (auto written = write_file(file->second, form.write(report)); !written) return written;
+  }
+  return {};
 }
+
+std::span<const ReportForm> report_forms() noexcept { return kForms; }
 
 Outcome<void> write_file(const std::string& path, std::string_view content) {
   errno = 0;

@@ -5,7 +5,10 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -128,13 +131,18 @@ enum class Style : std::uint8_t { kPlain, kColour };
 /// One page that needs no network, with search, filters and plots.
 [[nodiscard]] std::string to_html(const Report& report);
 
-/// Where a report is to be kept; an empty path: not in that form.
-struct ReportFiles {
-  std::string json{};
-  std::string html{};
-  std::string junit{};
-  std::string sarif{};
+/// A form in which a report can be kept.
+struct ReportForm {
+  std::string_view name;  ///< of the option that asks for it
+  std::string_view what;  ///< for people
+  std::string (*write)(const Report& report);
 };
+
+/// All of them; nothing else lists them.
+[[nodiscard]] std::span<const ReportForm> report_forms() noexcept;
+
+/// Where a report is to be kept: paths by the names of their forms; an empty one is passed over.
+using ReportFiles = std::map<std::string, std::string, std::less<>>;
 
 /// Writes each form that has a path. Stops at the first problem.
 [[nodiscard]] Outcome<void> write_files(const Report& report, const ReportFiles& files);

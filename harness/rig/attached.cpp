@@ -5,21 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 
 namespace armjig {
-namespace {
 
-constexpr std::array kKnownBoards{KnownBoard{"parol6", {0x0483, 0x5740}}};
-
-}  // namespace
-
-std::span<const KnownBoard> known_boards() noexcept { return kKnownBoards; }
-
-std::string_view device_behind(const SerialPort& port) noexcept {
+std::string_view device_behind(const SerialPort& port,
+                               std::span<const KnownBoard> boards) noexcept {
   if (!port.usb) return "";
-  const auto known = std::ranges::find(kKnownBoards, *port.usb, &KnownBoard::usb);
-  return known == kKnownBoards.end() ? "" : known->device;
+  const auto known = std::ranges::find(boards, *port.usb, &KnownBoard::usb);
+  return known == boards.end() ? "" : known->device;
 }
 
 std::string target_of(const SerialPort& port) { return "serial:" + port.path; }
@@ -33,8 +26,8 @@ std::string describe(const SerialPort& port) {
   return text;
 }
 
-Access access_to(const std::string& path) noexcept {
-  return ::access(path.c_str(), R_OK | W_OK) == 0 ? Access::kAllowed : Access::kDenied;
+FileAccess access_to(const std::string& path) noexcept {
+  return ::access(path.c_str(), R_OK | W_OK) == 0 ? FileAccess::kAllowed : FileAccess::kDenied;
 }
 
 }  // namespace armjig

@@ -12,18 +12,16 @@
 /// What is plugged into this machine, in the terms of targets.
 namespace armjig {
 
-/// A device that can be told by the USB numbers of its serial port.
+/// A device that can be told by the USB numbers of its serial port. They may be those of its chip's
+/// maker; then other boards look like it.
 struct KnownBoard {
   std::string_view device;
   UsbId usb;
 };
 
-/// All of them. The PAROL6 has the numbers of its chip's maker, so other boards with an STM32 look
-/// like it.
-[[nodiscard]] std::span<const KnownBoard> known_boards() noexcept;
-
 /// The device that a port looks like; empty if it looks like none.
-[[nodiscard]] std::string_view device_behind(const SerialPort& port) noexcept;
+[[nodiscard]] std::string_view device_behind(const SerialPort& port,
+                                             std::span<const KnownBoard> boards) noexcept;
 
 /// What `--target` takes for it.
 [[nodiscard]] std::string target_of(const SerialPort& port);
@@ -31,9 +29,9 @@ struct KnownBoard {
 /// For people: maker, product, serial number as far as they are known, else the description.
 [[nodiscard]] std::string describe(const SerialPort& port);
 
-enum class Access : std::uint8_t { kAllowed, kDenied };
+enum class FileAccess : std::uint8_t { kAllowed, kDenied };
 
 /// Whether this process may read and write the file at `path`; it is not opened.
-[[nodiscard]] Access access_to(const std::string& path) noexcept;
+[[nodiscard]] FileAccess access_to(const std::string& path) noexcept;
 
 }  // namespace armjig

@@ -6,7 +6,7 @@
 
 #include "harness/wire/demo/demo.hpp"
 
-namespace armjig::demo {
+namespace armjig::demo::rig {
 namespace {
 
 /// A request that has begun is damaged by these and dropped.
@@ -21,15 +21,13 @@ class DemoJudge final : public Judge {
 
   [[nodiscard]] Bytes opening_bytes() const override { return kFlush; }
 
-  std::optional<Refusal> judge(Bytes bytes, const Permissions& permissions) override {
+  std::optional<Refusal> judge(Messages messages, const Permissions& permissions) override {
     auto splitter = splitter_;
     auto is_running = is_running_;
-    for (const auto byte : bytes) {
+    for (const auto byte : messages.front()) {
       const auto operation = splitter.step(byte);
       if (operation == static_cast<std::byte>(Operation::kStart)) {
-        if (!permissions.allow(Hazard::kMove)) {
-          return Refusal{Hazard::kMove, "start needs --allow move"};
-        }
+        if (auto refusal = demand(Hazard::kMove, permissions, "start")) return refusal;
         is_running = true;
       } else if (operation == static_cast<std::byte>(Operation::kHalt)) {
         is_running = false;
@@ -41,18 +39,18 @@ class DemoJudge final : public Judge {
   }
 
   void observe(Bytes /*bytes*/) override {}
-  std::optional<std::string> must_stop() override { return std::nullopt; }
   [[nodiscard]] bool may_be_moving() const override { return is_running_; }
-  [[nodiscard]] Bytes stop_bytes() const override { return stop_; }
+  [[nodiscard]] Messages stop() const override { return {&stop_message_, 1}; }
 
  private:
   Splitter splitter_{kRequestStart};
   bool is_running_ = false;
   std::array<std::byte, kFlush.size() + kMessageSize> stop_{};
+  Bytes stop_message_{stop_};
 };
 
 }  // namespace
 
 std::unique_ptr<Judge> make_judge() { return std::make_unique<DemoJudge>(); }
 
-}  // namespace armjig::demo
+}  // namespace armjig::demo::rig

@@ -3,11 +3,11 @@
 
 #include <memory>
 
-#include "harness/rig/guard.hpp"
+#include "harness/rig/judge.hpp"
 
-namespace armjig::demo {
+namespace armjig::demo::rig {
 
 /// Starting is motion; everything else is harmless.
 [[nodiscard]] std::unique_ptr<Judge> make_judge();
 
-}  // namespace armjig::demo
+}  // namespace armjig::demo::rig

@@ -16,25 +16,29 @@
 #include <optional>
 
 #include "harness/link/descriptor.hpp"
-#include "harness/rig/attached.hpp"
 
 namespace armjig {
 namespace {
 
 namespace fs = std::filesystem;
 using State = Finding::State;
+using Boards = std::span<const KnownBoard>;
 
-constexpr std::string_view kUdevRules =
+constexpr std::string_view kUdevHead =
     R"(# SPDX-License-Identifier: Apache-2.0
 # Boards that armjig knows: the user at the desk may open them, ModemManager leaves them alone, and
-# they have a name that does not depend on what was plugged in first.
+# they have a name that does not depend on what was plugged in first. A board with the numbers of
+# its chip's maker looks like others with that chip.
 # The number is below 73, where udev turns the tag into permissions.
 ACTION=="remove", GOTO="armjig_end"
-
-# PAROL6 control board: the virtual serial port of its STM32. Other boards with one look the same.
-SUBSYSTEM=="usb", ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="0483", ATTR{idProduct}=="5740", ENV{ID_MM_DEVICE_IGNORE}="1"
-SUBSYSTEM=="tty", KERNEL=="ttyACM*", ATTRS{idVendor}=="0483", ATTRS{idProduct}=="5740", ENV{ID_MM_DEVICE_IGNORE}="1", TAG+="uaccess", SYMLINK+="armjig/parol6-$attr{serial}"
-
+)";
+/// Of the device, its vendor and its product.
+constexpr std::string_view kUdevBoard = R"(
+# {0}
+SUBSYSTEM=="usb", ENV{{DEVTYPE}}=="usb_device", ATTR{{idVendor}}=="{1:04x}", ATTR{{idProduct}}=="{2:04x}", ENV{{ID_MM_DEVICE_IGNORE}}="1"
+SUBSYSTEM=="tty", KERNEL=="ttyACM*", ATTRS{{idVendor}}=="{1:04x}", ATTRS{{idProduct}}=="{2:04x}", ENV{{ID_MM_DEVICE_IGNORE}}="1", TAG+="uaccess", SYMLINK+="armjig/{0}-$attr{{serial}}"
+)";
+constexpr std::string_view kUdevTail = R"(
 LABEL="armjig_end"
 )";
 
@@ -89,24 +93,25 @@ bool has_rules(const System& system) {
 
 // The checks. Each answers for one thing.
 
-Finding check_port(const System& system, const SerialPort& port) {
-  const auto device = device_behind(port);
+Finding check_port(const System& system, const SerialPort& port, Boards boards) {
+  const auto device = device_behind(port, boards);
   const auto what = device.empty() ? fmt::format("{} is at {}", describe(port), port.path)
                                    : fmt::format("{} is at {}, a {} by its USB numbers",
                                                  describe(port), port.path, device);
-  if (access_to(system.root + port.path) == Access::kAllowed) {
+  if (access_to(system.root + port.path) == FileAccess::kAllowed) {
     return {"port", State::kOk, fmt::format("{}: --target {}", what, target_of(port)), ""};
   }
   const auto state = device.empty() ? State::kAdvice : State::kProblem;
   return {"port", state, fmt::format("{}, and you may not open it", what), kJoinGroup};
 }
 
-std::vector<Finding> check_ports(const System& system) {
+std::vector<Finding> check_ports(const System& system, Boards boards) {
   std::vector<Finding> findings;
-  for (const auto& port : system.ports) findings.push_back(check_port(system, port));
+  for (const auto& port : system.ports) findings.push_back(check_port(system, port, boards));
   if (findings.empty()) {
     findings.push_back({"port", State::kAdvice, "no serial port is plugged in",
-                        "without a board: armjig emulate parol6"});
+                        fmt::format("without a board: armjig emulate {}",
+                                    boards.empty() ? "DEVICE" : boards.front().device)});
   }
   return findings;
 }
@@ -239,14 +244,20 @@ std::string_view to_string(Finding::State state) noexcept {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-std::vector<Finding> examine(const System& system) {
+std::vector<Finding> examine(const System& system, std::span<const KnownBoard> boards) {
   constexpr std::array kChecks{check_group,  check_rules,    check_modem_manager, check_priority,
                                check_memory, check_governor, check_slack,         check_ptys};
-  auto findings = check_ports(system);
+  auto findings = check_ports(system, boards);
   for (const auto check : kChecks) findings.push_back(check(system));
   return findings;
 }
 
-std::string_view udev_rules() noexcept { return kUdevRules; }
+std::string udev_rules(std::span<const KnownBoard> boards) {
+  std::string rules{kUdevHead};
+  for (const auto& board : boards) {
+    rules += fmt::format(kUdevBoard, board.device, board.usb.vendor, board.usb.product);
+  }
+  return rules += kUdevTail;
+}
 
 }  // namespace armjig

@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "harness/link/serial_stream.hpp"
+#include "harness/rig/attached.hpp"
 
 /// What on this machine is in the way of talking to real arms in time.
 namespace armjig {
@@ -44,10 +45,11 @@ struct Finding {
 [[nodiscard]] std::string_view to_string(Finding::State state) noexcept;
 
 /// Each check once or, for ports, once for each. Changes nothing.
-[[nodiscard]] std::vector<Finding> examine(const System& system);
+[[nodiscard]] std::vector<Finding> examine(const System& system,
+                                           std::span<const KnownBoard> boards);
 
-/// The udev rules for known boards. The Debian package installs them; elsewhere the user does.
-[[nodiscard]] std::string_view udev_rules() noexcept;
+/// The udev rules for boards. The Debian package installs them; elsewhere the user does.
+[[nodiscard]] std::string udev_rules(std::span<const KnownBoard> boards);
 inline constexpr std::string_view kUdevRulesFile = "60-armjig.rules";
 
 }  // namespace armjig

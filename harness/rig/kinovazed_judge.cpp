@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/rig/kinovazed_judge.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <string>
@@ -12,7 +10,7 @@
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/kinovazed/line_splitter.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::rig {
 namespace {
 
 /// By `Verb`.
@@ -49,17 +47,14 @@ class KinovaJudge final : public Judge {
     return std::as_bytes(std::span{kStop}).first(written_.line.empty() ? 0 : kLineEnd.size());
   }
 
-  std::optional<Refusal> judge(Bytes bytes, const Permissions& permissions) override {
+  std::optional<Refusal> judge(Messages messages, const Permissions& permissions) override {
     auto next = written_;
-    for (const auto byte : bytes) {
+    for (const auto byte : messages.front()) {
       next.add(static_cast<char>(byte));
       const auto verb = next.completed();
       if (!verb) continue;
       const auto hazard = kHazards[static_cast<std::size_t>(*verb)];
-      if (!permissions.allow(hazard)) {
-        return Refusal{hazard,
-                       fmt::format("{} needs --allow {}", to_string(*verb), to_string(hazard))};
-      }
+      if (auto refusal = demand(hazard, permissions, to_string(*verb))) return refusal;
       if (moves(hazard)) next.may_be_moving = true;
       if (*verb == Verb::kMoveJoystick) next.is_stick_deflected = true;
       if (hazard != Hazard::kObserve) next.beats_at_rest = 0;
@@ -79,9 +74,8 @@ class KinovaJudge final : public Judge {
     }
   }
 
-  std::optional<std::string> must_stop() override { return std::nullopt; }
   [[nodiscard]] bool may_be_moving() const override { return written_.may_be_moving; }
-  [[nodiscard]] Bytes stop_bytes() const override { return std::as_bytes(std::span{kStop}); }
+  [[nodiscard]] Messages stop() const override { return {&stop_message_, 1}; }
 
  private:
   /// What was written, as far as it matters.
@@ -123,10 +117,11 @@ class KinovaJudge final : public Judge {
 
   Written written_;
   LineSplitter splitter_;
+  Bytes stop_message_ = std::as_bytes(std::span{kStop});
 };
 
 }  // namespace
 
 std::unique_ptr<Judge> make_judge() { return std::make_unique<KinovaJudge>(); }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::rig

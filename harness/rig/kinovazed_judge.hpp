@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "harness/rig/guard.hpp"
+#include "harness/rig/judge.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::rig {
 
 /// Judges by words alone: whatever completes the word of a command counts as that command, wherever
 /// it stands in a line and whatever the line is worth. So nothing slips past the shipped server's
@@ -17,4 +17,4 @@ namespace armjig::kinovazed {
 /// have shown a state of rest.
 [[nodiscard]] std::unique_ptr<Judge> make_judge();
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::rig

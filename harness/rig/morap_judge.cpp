@@ -7,15 +7,27 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
+#include "harness/link/bus_port.hpp"
 #include "harness/wire/morap/message.hpp"
 #include "harness/wire/morap/pen.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::rig {
 namespace {
 
 constexpr std::size_t kCounterRange = 256;  // of the node's byte counter
-constexpr std::array kDisable{static_cast<std::byte>(CommandId::kDisable)};
+constexpr std::size_t kAddresses = 128;
+
+/// What disables the node at each address.
+constexpr auto kStops = [] {
+  std::array<std::array<std::byte, 2>, kAddresses> stops{};
+  for (std::size_t address = 0; address < kAddresses; ++address) {
+    stops[address] = {static_cast<std::byte>(address << 1U),
+                      static_cast<std::byte>(CommandId::kDisable)};
+  }
+  return stops;
+}();
 
 /// What is known of the node at an address.
 enum class Drive : std::uint8_t {
@@ -57,30 +69,71 @@ std::string_view danger_of(const Command& command, std::size_t surplus) noexcept
   return {};
 }
 
-class NodeJudge final : public BusJudge {
+using Drives = std::array<Drive, kAddresses>;
+
+/// What a message means for the node that has all of it.
+void follow(Drives& drives, const BusMessage& message) noexcept {
+  if (message.access == Access::kRead || message.write.empty()) return;
+  if (!is_node(message.address)) return;
+  const auto decoded = decode_command(message.write);
+  const auto* found = std::get_if<DecodedCommand>(&decoded);
+  if (found == nullptr) return;
+  const auto id = found->command.id;
+  auto& drive = drives[message.address.value];
+  if (is_reference(id)) drive = Drive::kMoves;
+  if (is_calibration(id) && drive == Drive::kUnknown) drive = Drive::kMoves;
+  if (id == CommandId::kDisable || id == CommandId::kCalibrationUnknown) drive = Drive::kStands;
+}
+
+/// Of a transaction's bytes. Requires a message that is not empty.
+BusMessage message_of(Bytes bytes) noexcept {
+  const auto head = std::to_integer<std::uint8_t>(bytes[0]);
+  const BusAddress address{static_cast<std::uint8_t>(head >> 1U)};
+  return {address, (head & 1U) != 0 ? Access::kRead : Access::kWrite, bytes.subspan(1), {}};
+}
+
+class NodeJudge final : public Judge {
  public:
-  std::optional<Refusal> judge(const BusMessage& message, const Permissions& permissions) override {
+  NodeJudge() { stop_.reserve(kAddresses); }
+
+  std::optional<Refusal> judge(Messages messages, const Permissions& permissions) override {
+    auto drives = drives_;
+    auto worst = drives_;
+    for (const auto bytes : messages) {
+      const auto message = message_of(bytes);
+      if (auto refusal = judge_message(message, drives, permissions)) return refusal;
+      follow(drives, message);
+      const auto address = message.address.value;
+      if (drives[address] == Drive::kMoves) worst[address] = Drive::kMoves;
+    }
+    drives_ = worst;
+    renew_stop();
+    return std::nullopt;
+  }
+
+  /// What ends motion counts when the node has it.
+  void observe(Bytes bytes) override {
+    follow(drives_, message_of(bytes));
+    renew_stop();
+  }
+
+  [[nodiscard]] bool may_be_moving() const override { return !stop_.empty(); }
+  [[nodiscard]] Messages stop() const override { return stop_; }
+
+ private:
+  void renew_stop() {
+    stop_.clear();
+    for (std::size_t address = 0; address < kAddresses; ++address) {
+      if (drives_[address] == Drive::kMoves) stop_.emplace_back(kStops[address]);
+    }
+  }
+
+  static std::optional<Refusal> judge_message(const BusMessage& message, const Drives& drives,
+                                              const Permissions& permissions) {
     if (message.address.value == pen::kAddress) return judge_pen(message, permissions);
     if (message.access == Access::kRead || message.write.empty()) return std::nullopt;
     if (!is_node(message.address)) return demand(Hazard::kState, permissions, "an unknown device");
-    return judge_write(message, permissions);
-  }
-
-  std::vector<BusAddress> moving() const override {
-    std::vector<BusAddress> addresses;
-    for (std::uint8_t address = 0; address < drives_.size(); ++address) {
-      if (drives_[address] == Drive::kMoves) addresses.push_back({address});
-    }
-    return addresses;
-  }
-
-  Bytes stop_bytes() const override { return kDisable; }
-
- private:
-  static std::optional<Refusal> demand(Hazard hazard, const Permissions& permissions,
-                                       std::string_view what) {
-    if (permissions.allow(hazard)) return std::nullopt;
-    return Refusal{hazard, std::string{what} + " needs --allow " + std::string{to_string(hazard)}};
+    return judge_write(message.write, drives[message.address.value], permissions);
   }
 
   static std::optional<Refusal> judge_pen(const BusMessage& message,
@@ -97,8 +150,8 @@ class NodeJudge final : public BusJudge {
     return demand(Hazard::kGrip, permissions, "the pen");
   }
 
-  std::optional<Refusal> judge_write(const BusMessage& message, const Permissions& permissions) {
-    const auto data = message.write;
+  static std::optional<Refusal> judge_write(Bytes data, Drive drive,
+                                            const Permissions& permissions) {
     if (data.size() >= kCounterRange) {
       return Refusal{Hazard::kMove, "byte 256 of a write would be a new command"};
     }
@@ -109,14 +162,7 @@ class NodeJudge final : public BusJudge {
     if (const auto danger = danger_of(command, data.size() - size); !danger.empty()) {
       return Refusal{Hazard::kMove, std::string{danger}};
     }
-    auto& drive = drives_[message.address.value & 0x7FU];
-    if (auto refusal = judge_command(command.id, drive, permissions)) return refusal;
-    if (is_reference(command.id)) drive = Drive::kMoves;
-    if (is_calibration(command.id) && drive == Drive::kUnknown) drive = Drive::kMoves;
-    if (command.id == CommandId::kDisable || command.id == CommandId::kCalibrationUnknown) {
-      drive = Drive::kStands;
-    }
-    return std::nullopt;
+    return judge_command(command.id, drive, permissions);
   }
 
   /// Cut short or unknown, it does nothing. A set that is refused changes the programming status.
@@ -140,11 +186,12 @@ class NodeJudge final : public BusJudge {
                       " of a node that may follow a reference (disable it first, or it)");
   }
 
-  std::array<Drive, 128> drives_{};
+  Drives drives_{};
+  std::vector<Bytes> stop_;
 };
 
 }  // namespace
 
-std::unique_ptr<BusJudge> make_judge() { return std::make_unique<NodeJudge>(); }
+std::unique_ptr<Judge> make_judge() { return std::make_unique<NodeJudge>(); }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::rig

@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "harness/rig/bus_guard.hpp"
+#include "harness/rig/judge.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::rig {
 
 /// Judges by what the shipped node would do at each byte, and refuses whatever makes its firmware
 /// or that of the pen write to memory that is not theirs, divide by zero or hang, whatever the
@@ -17,6 +17,6 @@ namespace armjig::morap {
 /// last reference: one that was sent before is followed from then on. Programming and tuning need
 /// permission to program if the node is known to stand, and to move otherwise. Writing to a device
 /// that is neither node nor pen is taken for a change of its state.
-[[nodiscard]] std::unique_ptr<BusJudge> make_judge();
+[[nodiscard]] std::unique_ptr<Judge> make_judge();
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::rig

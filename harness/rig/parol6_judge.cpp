@@ -12,7 +12,7 @@
 #include "harness/wire/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::rig {
 namespace {
 
 constexpr std::uint8_t kAllHomed = 0xFC;
@@ -146,7 +146,8 @@ class BoardJudge final : public Judge {
 
   [[nodiscard]] Bytes opening_bytes() const override { return kOpening; }
 
-  std::optional<Refusal> judge(Bytes bytes, const Permissions& permissions) override {
+  std::optional<Refusal> judge(Messages messages, const Permissions& permissions) override {
+    const auto bytes = messages.front();
     auto receiver = receiver_;
     auto shipped = shipped_;
     auto strict = strict_;
@@ -201,7 +202,7 @@ class BoardJudge final : public Judge {
     return shipped_.may_be_moving() || strict_.may_be_moving();
   }
 
-  [[nodiscard]] Bytes stop_bytes() const override { return stop_; }
+  [[nodiscard]] Messages stop() const override { return {&stop_message_, 1}; }
 
  private:
   /// Outputs and gripper stay as they are: a load must not fall because the arm stops.
@@ -223,9 +224,8 @@ class BoardJudge final : public Judge {
 
   [[nodiscard]] Verdict judge_frame(const CommandFrame& frame, const CommandFrame& before,
                                     const Permissions& permissions) const {
-    const auto needs = [&](Hazard hazard, std::string_view what) -> Verdict {
-      if (permissions.allow(hazard)) return std::nullopt;
-      return Refusal{hazard, fmt::format("{} needs --allow {}", what, to_string(hazard))};
+    const auto needs = [&](Hazard hazard, std::string_view what) {
+      return demand(hazard, permissions, what);
     };
     if (((frame.in_out ^ before.in_out) & kOutputs) != 0) {
       if (auto refusal = needs(Hazard::kState, "switching an output")) return refusal;
@@ -260,13 +260,14 @@ class BoardJudge final : public Judge {
 
   [[nodiscard]] Verdict refuse_when_unsafe(Hazard hazard) const {
     if (telemetry_ && is_estop_pressed(*telemetry_)) {
-      return Refusal{hazard, "the emergency stop is pressed"};
+      return Refusal{hazard, "the emergency stop is pressed", Refusal::Cause::kDevice};
     }
     if (unanswered_ >= kOutOfSight) {
       return Refusal{hazard,
                      fmt::format("the board has not answered {} frames, so nobody could see its "
                                  "emergency stop",
-                                 unanswered_)};
+                                 unanswered_),
+                     Refusal::Cause::kDevice};
     }
     return std::nullopt;
   }
@@ -279,7 +280,8 @@ class BoardJudge final : public Judge {
                                                   kJointBounds[j].max_jog.value)};
       }
       if (is_arm_homed() && kJointBounds[j].forbid(telemetry_->position[j], speed)) {
-        return Refusal{Hazard::kMove, fmt::format("j{} is at its bound", j + 1)};
+        return Refusal{Hazard::kMove, fmt::format("j{} is at its bound", j + 1),
+                       Refusal::Cause::kDevice};
       }
     }
     return std::nullopt;
@@ -330,10 +332,11 @@ class BoardJudge final : public Judge {
   std::optional<TelemetryFrame> telemetry_;
   std::optional<std::string> stop_reason_;
   std::array<std::byte, kFlushSize + kCommandFrameSize> stop_{};
+  Bytes stop_message_{stop_};
 };
 
 }  // namespace
 
 std::unique_ptr<Judge> make_judge() { return std::make_unique<BoardJudge>(); }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::rig

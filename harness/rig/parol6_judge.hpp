@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "harness/rig/guard.hpp"
+#include "harness/rig/judge.hpp"
 #include "harness/wire/parol6/joint_bounds.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::rig {
 
 /// Judges by what the shipped board would accept, and by whatever looks like a frame to a board
 /// that keeps to the document. Bounds of position need a homed arm: without it go-to is refused,
@@ -18,4 +18,4 @@ namespace armjig::parol6 {
 /// first idle frame, and the first frame of all sets outputs and gripper, as every frame does.
 [[nodiscard]] std::unique_ptr<Judge> make_judge();
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::rig

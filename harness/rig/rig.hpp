@@ -2,67 +2,93 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "harness/core/error.hpp"
-#include "harness/link/impaired_stream.hpp"
+#include "harness/link/bus_port.hpp"
+#include "harness/link/impaired_path.hpp"
 #include "harness/link/impairment.hpp"
+#include "harness/link/session_source.hpp"
 #include "harness/link/stream_port.hpp"
-#include "harness/rig/guard.hpp"
+#include "harness/rig/guarded_ports.hpp"
 #include "harness/rig/target.hpp"
+#include "harness/rig/wiring.hpp"
 
 namespace armjig {
 
 /// What to do when the target disappears.
 enum class WhenGone : std::uint8_t {
   kFail,
-  kReopen,  ///< wait until it is back; only for looking at a real device
+  kReopen,  ///< wait until it is back; only for looking at a real device on a stream
 };
 
 /// How a target is opened.
 struct RigOptions {
   Target target;
-  Permissions permissions;               ///< what may be written to it, if it is not emulated
+  Permissions permissions;               ///< what may be sent to it, if it is not emulated
   std::optional<Impairment> impairment;  ///< a bad link on purpose
   std::string wire_log;                  ///< a file for every byte on the wire; empty: none
   WhenGone when_gone{};
+  WhenLeft when_left{};  ///< of a server
 };
 
-/// A device on the jig. From the device outwards: its port, the wire log, the guard unless it is
-/// emulated, the impairments. So the log has what the device really got, the guard's own stops
-/// among it, and a flipped bit does not slip past the guard. This is the one way by which programs
-/// get at a target.
+/// A device on the jig, for `Port` as in `Wiring`. From the device outwards: its port, the wire
+/// log, the guard unless it is emulated, the impairments. So the log has what the device really
+/// got, the guard's own stops among it, and a flipped bit does not slip past the guard. This is the
+/// one way by which programs get at a target.
+template <class Port>
 class Rig {
  public:
-  /// `device` must be one that this room knows. With permission to move, call it while the program
-  /// has one thread (see `GuardedStream::guard`). A target that moves may not be reopened: when it
-  /// has gone, a person has to look at it (`kBadValue`).
-  [[nodiscard]] static Outcome<Rig> open(std::string_view device, const RigOptions& options,
-                                         OpenEmulated open_emulated);
+  /// With permission to move, call it, and connect to a server, while the program has one thread
+  /// (see `Supervisor::start`). A target that moves may not be reopened: when it has gone, a person
+  /// has to look at it (`kBadValue`). Problems: those of `open_target`; `kUnsupported` for an
+  /// impairment that a bus cannot have; that of the wire log.
+  [[nodiscard]] static Outcome<Rig> open(const Wiring<Port>& wiring, const RigOptions& options);
 
   /// A rig of nothing but a port, without a guard: for devices in memory.
-  explicit Rig(std::unique_ptr<StreamPort> port) noexcept : port_{std::move(port)} {}
+  explicit Rig(std::unique_ptr<Port> port) noexcept : port_{std::move(port)} {}
 
-  [[nodiscard]] StreamPort& port() noexcept { return *port_; }
-  [[nodiscard]] const StreamPort& port() const noexcept { return *port_; }
+  [[nodiscard]] Port& port() noexcept { return *port_; }
+  [[nodiscard]] const Port& port() const noexcept { return *port_; }
 
-  /// Why the guard last refused a write or stopped the arm; none if it never did.
-  [[nodiscard]] std::optional<Refusal> last_refusal() const;
+  /// Why the guard last refused something or stopped the arm; none if it never did.
+  [[nodiscard]] std::optional<Refusal> last_refusal() const {
+    return watch_ == nullptr ? std::nullopt : watch_->last_refusal;
+  }
 
   /// The arm was stopped because this program gave no sign of life, and may not move any more.
-  [[nodiscard]] bool is_unsupervised() const;
+  [[nodiscard]] bool is_unsupervised() const {
+    return watch_ != nullptr && watch_->is_unsupervised;
+  }
 
-  /// What the impairments did; none if there are none.
-  [[nodiscard]] std::optional<ImpairmentStatistics> impairments() const;
+  /// What the impairments did, of all connections together; none if there are none.
+  [[nodiscard]] std::optional<ImpairmentStatistics> impairments() const {
+    return count_ ? std::optional{count_()} : std::nullopt;
+  }
 
  private:
-  std::unique_ptr<StreamPort> port_;
-  const GuardedStream* guard_ = nullptr;      ///< inside `port_`
-  const ImpairedStream* impaired_ = nullptr;  ///< inside `port_`
+  template <class Other>
+  friend class Rig;
+  friend Outcome<Rig<StreamPort>> connect(Rig<SessionSource> server, const std::string& target,
+                                          WhenGone when_gone);
+
+  std::unique_ptr<Port> port_;
+  std::shared_ptr<GuardState> watch_;            ///< none without a guard
+  std::function<ImpairmentStatistics()> count_;  ///< none without impairments
 };
+
+extern template class Rig<StreamPort>;
+extern template class Rig<SessionSource>;
+extern template class Rig<BusPort>;
+
+/// A connection to a server, its only one, as a byte stream. It is begun within two seconds; when
+/// it has ended, so has the stream (`kFail`), or it is begun again (`kReopen`, not in virtual
+/// time). `target` is for messages.
+[[nodiscard]] Outcome<Rig<StreamPort>> connect(Rig<SessionSource> server, const std::string& target,
+                                               WhenGone when_gone = WhenGone::kFail);
 
 }  // namespace armjig

@@ -29,27 +29,16 @@ constexpr auto kName = "arm-supervisor";
 
 /// Its first word, when nothing can disturb it any more.
 constexpr char kReady = 'r';
-/// What it hears is a `Motion`, or the new stop behind this byte.
+/// What it hears is a `Motion`, or the new stop after this byte.
 constexpr char kNewStop = 'n';
-using MessageBytes = std::array<char, 1 + Supervisor::kMostStopBytes>;
-
-/// What the supervisor knows; no heap behind it.
-struct Stop {
-  std::array<std::byte, Supervisor::kMostStopBytes> bytes{};
-  std::size_t size = 0;
-
-  void set(Bytes stop) noexcept {
-    size = std::min(stop.size(), bytes.size());
-    std::copy_n(stop.begin(), size, bytes.begin());
-  }
-};
+using Packet = std::array<std::byte, 1 + PackedStop::kMostBytes>;
 
 /// The other one may have heard nothing for a while for want of processor time; that is no reason
 /// yet to give it up.
-bool say(const Descriptor& socket, const char* message, std::size_t size) noexcept {
+bool say(const Descriptor& socket, Bytes message) noexcept {
   constexpr int kPatienceMs = 200;
   const auto sent = [&] {
-    return ::send(socket.value(), message, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    return ::send(socket.value(), message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   };
   auto result = sent();
   if (result < 0 && errno == EAGAIN) {
@@ -57,7 +46,7 @@ bool say(const Descriptor& socket, const char* message, std::size_t size) noexce
     ::poll(&ready, 1, kPatienceMs);
     result = sent();
   }
-  return result == static_cast<ssize_t>(size);
+  return result == static_cast<ssize_t>(message.size());
 }
 
 // From here to `supervise`: only what is safe in a process that was forked, which is system calls.
@@ -86,73 +75,96 @@ void step_aside() noexcept {
   ::prctl(PR_SET_NAME, kName);
 }
 
-[[noreturn]] void send_stops(int port, const Stop& stop) noexcept {
-  std::array<std::byte, 4096> ignored;
+[[noreturn]] void send_stops(const Lifeline& line, const PackedStop& stop) noexcept {
   for (int i = 0; i < kStops; ++i) {
-    // Errors and short writes are met by trying again; nothing else could be done here.
-    (void)!::write(port, stop.bytes.data(), stop.size);
+    stop.send(line);
     ::poll(nullptr, 0, kStopIntervalMs);
-    (void)!::read(port, ignored.data(), ignored.size());  // else the board's answers pile up
   }
   ::_exit(0);
 }
 
-[[noreturn]] void supervise(int socket, int port, Stop stop) noexcept {
+[[noreturn]] void supervise(int socket, const Lifeline& line, PackedStop stop) noexcept {
   step_aside();
-  close_all_but(socket, port);
+  close_all_but(socket, line.descriptor);
   (void)!::send(socket, &kReady, 1, MSG_NOSIGNAL);
   auto motion = Supervisor::Motion::kNone;
   const auto end = [&]() {
     ::close(socket);  // first, so that who wakes up meanwhile learns at once that we are gone
-    if (motion == Supervisor::Motion::kPossible) send_stops(port, stop);
+    if (motion == Supervisor::Motion::kPossible) send_stops(line, stop);
     ::_exit(0);
   };
   for (;;) {
     pollfd ready{.fd = socket, .events = POLLIN, .revents = 0};
     const bool is_moving = motion == Supervisor::Motion::kPossible;
     if (::poll(&ready, 1, is_moving ? kSilenceMs : -1) == 0) end();
-    MessageBytes message;
-    const auto size = ::recv(socket, message.data(), message.size(), 0);
+    Packet packet;
+    const auto size = ::recv(socket, packet.data(), packet.size(), 0);
     if (size <= 0) end();
-    const auto content = std::as_bytes(std::span{message}).first(static_cast<std::size_t>(size));
-    if (message[0] == kNewStop) {
-      stop.set(content.subspan(1));
+    if (packet[0] == std::byte{kNewStop}) {
+      stop = PackedStop::of(Bytes{packet}.first(static_cast<std::size_t>(size)).subspan(1));
     } else {
-      motion = static_cast<Supervisor::Motion>(message[0]);
+      motion = static_cast<Supervisor::Motion>(packet[0]);
     }
   }
 }
 
 }  // namespace
 
-Result<Supervisor> Supervisor::start(int port, Bytes stop) {
-  assert(stop.size() <= kMostStopBytes);
+PackedStop::PackedStop(Messages messages) noexcept {
+  for (const auto message : messages) {
+    assert(size_ + kPrefix + message.size() <= bytes_.size());
+    bytes_[size_] = static_cast<std::byte>(message.size() >> 8U);
+    bytes_[size_ + 1] = static_cast<std::byte>(message.size());
+    std::ranges::copy(message, bytes_.begin() + static_cast<std::ptrdiff_t>(size_ + kPrefix));
+    size_ += kPrefix + message.size();
+  }
+}
+
+PackedStop PackedStop::of(Bytes packed) noexcept {
+  PackedStop stop;
+  stop.size_ = packed.size();
+  std::ranges::copy(packed, stop.bytes_.begin());
+  return stop;
+}
+
+void PackedStop::send(const Lifeline& line) const noexcept {
+  for (auto rest = bytes(); !rest.empty();) {
+    const auto size =
+        std::to_integer<std::size_t>(rest[0]) << 8U | std::to_integer<std::size_t>(rest[1]);
+    line.send(line.descriptor, rest.subspan(kPrefix, size));
+    rest = rest.subspan(kPrefix + size);
+  }
+}
+
+Result<Supervisor> Supervisor::start(const Lifeline& line, Messages stop) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return fail(ErrorCode::kSystem, errno);
   }
   Descriptor theirs{ends[0]};
   Descriptor ours{ends[1]};
-  Stop first_stop;
-  first_stop.set(stop);
+  const PackedStop first_stop{stop};
   const int process = ::fork();
   if (process < 0) return fail(ErrorCode::kSystem, errno);
-  if (process == 0) supervise(theirs.value(), port, first_stop);
+  if (process == 0) supervise(theirs.value(), line, first_stop);
   theirs.close();  // so that its death ends the waiting
-  Supervisor supervisor{std::move(ours), process};
+  Supervisor supervisor{std::move(ours), process, first_stop};
   if (!supervisor.is_ready()) return fail(ErrorCode::kSystem, ECHILD);
   return supervisor;
 }
 
-Supervisor::Supervisor(Descriptor socket, int process) noexcept
-    : socket_{std::move(socket)}, process_{process} {}
+Supervisor::Supervisor(Descriptor socket, int process, const PackedStop& told) noexcept
+    : socket_{std::move(socket)}, process_{process}, told_{told} {}
 
 Supervisor::Supervisor(Supervisor&& other) noexcept
-    : socket_{std::move(other.socket_)}, process_{std::exchange(other.process_, -1)} {}
+    : socket_{std::move(other.socket_)},
+      process_{std::exchange(other.process_, -1)},
+      told_{other.told_} {}
 
 Supervisor& Supervisor::operator=(Supervisor&& other) noexcept {
   std::swap(socket_, other.socket_);
   std::swap(process_, other.process_);
+  std::swap(told_, other.told_);
   return *this;
 }
 
@@ -172,17 +184,18 @@ bool Supervisor::is_ready() const noexcept {
 }
 
 bool Supervisor::tell(Motion motion) noexcept {
-  const auto message = static_cast<char>(motion);
-  return say(socket_, &message, 1);
+  const auto packet = static_cast<std::byte>(motion);
+  return say(socket_, {&packet, 1});
 }
 
-bool Supervisor::tell_stop(Bytes stop) noexcept {
-  assert(stop.size() <= kMostStopBytes);
-  MessageBytes message;
-  message[0] = kNewStop;
-  const auto* const first = reinterpret_cast<const char*>(stop.data());
-  std::copy_n(first, stop.size(), message.data() + 1);
-  return say(socket_, message.data(), 1 + stop.size());
+bool Supervisor::tell_stop(Messages stop) noexcept {
+  const PackedStop next{stop};
+  if (next == told_) return true;
+  Packet packet{std::byte{kNewStop}};
+  std::ranges::copy(next.bytes(), packet.begin() + 1);
+  if (!say(socket_, Bytes{packet}.first(1 + next.bytes().size()))) return false;
+  told_ = next;
+  return true;
 }
 
 }  // namespace armjig

@@ -3,49 +3,59 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
-#include <vector>
 
+#include "harness/capture/message_json.hpp"
 #include "harness/core/hex.hpp"
 
 namespace armjig {
 
-Outcome<std::unique_ptr<StreamPort>> LoggedStream::log(std::unique_ptr<StreamPort> port,
-                                                       const std::string& path,
-                                                       const DissectorEntry& device) {
-  auto file = LogFile::create(path, device.device);
-  if (!file) return tl::unexpected{file.error()};
-  return std::unique_ptr<StreamPort>{
-      new LoggedStream{std::move(port), *std::move(file), device.make()}};
+Outcome<std::shared_ptr<WireLog>> WireLog::create(const std::string& path, std::string_view device,
+                                                  MakeDissector make_dissector) {
+  std::ofstream file{path, std::ios::trunc};
+  file << fmt::format(R"({{"format":"golden-trace/1","device":"{}","title":"wire log"}})", device)
+       << '\n'
+       << std::flush;
+  if (!file) {
+    return problem(ErrorCode::kCannotWrite, path, "check that the folder exists and is writable");
+  }
+  return std::shared_ptr<WireLog>{new WireLog{std::move(file), make_dissector}};
 }
 
-LoggedStream::LoggedStream(std::unique_ptr<StreamPort> port, LogFile file,
-                           std::unique_ptr<Dissector> dissector)
-    : port_{std::move(port)}, file_{std::move(file)}, dissector_{std::move(dissector)} {}
+WireLog::WireLog(std::ofstream file, MakeDissector make_dissector)
+    : file_{std::move(file)}, make_dissector_{make_dissector} {}
 
-Result<void> LoggedStream::write(Bytes bytes) {
-  const auto written = port_->write(bytes);
-  if (written) write_line(Direction::kToDevice, bytes);
-  return written;
+void WireLog::add(Instant time, std::string_view keys, std::span<const Message> messages) {
+  last_ = std::max(last_, time);
+  file_ << fmt::format(R"({{"t_us":{},{})", microseconds(last_), keys);
+  const char* separator = ",\"messages\":[";
+  for (const auto& message : messages) {
+    file_ << separator << to_json(message);
+    separator = ",";
+  }
+  file_ << (messages.empty() ? "}" : "]}") << '\n' << std::flush;
 }
 
-Result<std::size_t> LoggedStream::read(std::span<std::byte> into, Instant deadline) {
-  const auto size = port_->read(into, deadline);
-  if (size && *size > 0) write_line(Direction::kFromDevice, into.first(*size));
-  return size;
+void WireLog::add_input(Instant time, std::string_view kind, std::string_view name,
+                        std::int64_t value) {
+  add(time, fmt::format(R"("{}":"input","name":"{}","value":{})", kind, name, value));
 }
 
-bool LoggedStream::touch(std::string_view input, std::int64_t value) {
-  if (!port_->touch(input, value)) return false;
-  file_.add(now(), fmt::format(R"("dir":"input","name":"{}","value":{})", input, value));
-  return true;
-}
+WireLog::Talk::Talk(std::shared_ptr<WireLog> log)
+    : log_{std::move(log)}, dissector_{log_->make_dissector_()} {}
 
-void LoggedStream::write_line(Direction direction, Bytes bytes) {
+void WireLog::Talk::add(Instant time, std::string_view keys, Direction direction, Bytes bytes) {
   std::vector<Message> messages;
-  dissector_->feed(direction, now(), bytes, messages);
-  file_.add(now(), fmt::format(R"("dir":"{}","hex":"{}")", to_string(direction), to_hex(bytes)),
-            messages);
+  if (!bytes.empty()) dissector_->feed(direction, time, bytes, messages);
+  log_->add(time, keys, messages);
+}
+
+void WireLog::Talk::add_bytes(Instant time, std::string_view keys, Direction direction,
+                              Bytes bytes) {
+  const auto line =
+      fmt::format(R"("dir":"{}",{}"hex":"{}")", to_string(direction), keys, to_hex(bytes));
+  add(time, line, direction, bytes);
 }
 
 }  // namespace armjig

@@ -1,40 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <fstream>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "harness/core/error.hpp"
-#include "harness/link/stream_port.hpp"
-#include "harness/rig/log_file.hpp"
+#include "harness/core/time.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
-/// Writes down every byte that passes, with its time and what it means: a line for each piece as it
-/// was written or read, with a key `messages` for those that ended in it. Not in it: what a write
-/// that failed may have sent in part, and the stops of the supervisor, which come when we are gone.
-class LoggedStream final : public StreamPort {
+/// A `golden-trace/1` file that grows line by line with what passes, and what it means: a key
+/// `messages` has those that ended in the line. `armjig decode` reads it back. Lines are flushed as
+/// they are made, so that nothing is missing after a crash. Not in it: what a write that failed may
+/// have sent in part, and the stops of the supervisor, which come when we are gone.
+class WireLog {
  public:
-  /// Problems: the file cannot be written.
-  [[nodiscard]] static Outcome<std::unique_ptr<StreamPort>> log(std::unique_ptr<StreamPort> port,
-                                                                const std::string& path,
-                                                                const DissectorEntry& device);
+  using MakeDissector = std::unique_ptr<Dissector> (*)();
 
-  Result<void> write(Bytes bytes) override;
-  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override;
-  [[nodiscard]] Instant now() const override { return port_->now(); }
-  [[nodiscard]] std::optional<int> descriptor() const override { return port_->descriptor(); }
-  [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override;
+  /// What was said on one byte stream, connection or bus.
+  class Talk {
+   public:
+    explicit Talk(std::shared_ptr<WireLog> log);
+    /// A line with `keys`, JSON without the braces, after the time. `bytes` are what they tell.
+    void add(Instant time, std::string_view keys, Direction direction, Bytes bytes);
+    /// A line `to_device` or `from_device`; `keys` as above, each with a comma after it.
+    void add_bytes(Instant time, std::string_view keys, Direction direction, Bytes bytes);
+    [[nodiscard]] WireLog& log() noexcept { return *log_; }
+
+   private:
+    std::shared_ptr<WireLog> log_;
+    std::unique_ptr<Dissector> dissector_;
+  };
+
+  /// Problems: the file cannot be written.
+  [[nodiscard]] static Outcome<std::shared_ptr<WireLog>> create(const std::string& path,
+                                                                std::string_view device,
+                                                                MakeDissector make_dissector);
+
+  /// A line; `keys` as above. A time before the last one, as clocks that were read one after the
+  /// other may have it, is taken for that.
+  void add(Instant time, std::string_view keys, std::span<const Message> messages = {});
+
+  /// What somebody did at the device; `kind` is `dir` or `op`.
+  void add_input(Instant time, std::string_view kind, std::string_view name, std::int64_t value);
+
+  /// Numbers connections in the order of their beginnings.
+  [[nodiscard]] int next_connection() noexcept { return connections_++; }
 
  private:
-  LoggedStream(std::unique_ptr<StreamPort> port, LogFile file,
-               std::unique_ptr<Dissector> dissector);
-  void write_line(Direction direction, Bytes bytes);
+  WireLog(std::ofstream file, MakeDissector make_dissector);
 
-  std::unique_ptr<StreamPort> port_;
-  LogFile file_;
-  std::unique_ptr<Dissector> dissector_;
+  std::ofstream file_;
+  MakeDissector make_dissector_;
+  Instant last_{};
+  int connections_ = 0;
 };
 
 }  // namespace armjig

@@ -15,8 +15,8 @@ namespace {
 constexpr double kCalibrationTime = 4;
 
 /// Arguments of a move that do nothing, in a sentence; empty if there are none.
-std::string idle_arguments(const parol6::Move& move) {
-  using Kind = parol6::Move::Kind;
+std::string idle_arguments(const parol6::planning::Move& move) {
+  using Kind = parol6::planning::Move::Kind;
   const auto& timing = move.timing;
   const bool has_time = timing.duration && *timing.duration > 0;
   if (move.kind == Kind::kLine || move.kind == Kind::kToolLine) {
@@ -41,13 +41,14 @@ class GripperWatch {
     }
     if (!needs_gripper(statement)) return std::nullopt;
     auto found = miss(statement.place);
-    if (!std::holds_alternative<parol6::Move>(statement.command)) begin(statement.command);
+    if (!std::holds_alternative<parol6::planning::Move>(statement.command))
+      begin(statement.command);
     return found;
   }
 
   /// Whether the gripper should be at rest when this begins.
   static bool needs_gripper(const Statement& statement) {
-    return std::holds_alternative<parol6::Move>(statement.command) ||
+    return std::holds_alternative<parol6::planning::Move>(statement.command) ||
            std::holds_alternative<GripperMove>(statement.command) ||
            std::holds_alternative<GripperCalibration>(statement.command);
   }
@@ -128,7 +129,7 @@ std::vector<Diagnostic> check(const Program& program) {
   for (const auto& statement : program.statements) {
     add(check_flaw(statement));
     add(gripper.pass(statement));
-    const auto* const move = std::get_if<parol6::Move>(&statement.command);
+    const auto* const move = std::get_if<parol6::planning::Move>(&statement.command);
     if (move == nullptr) continue;
     if (auto text = idle_arguments(*move); !text.empty()) {
       found.push_back({Severity::kWarning, statement.place, std::move(text)});

@@ -148,9 +148,10 @@ std::optional<std::array<double, 6>> take_target(Cursor& cursor) {
 
 /// From behind the opening parenthesis. The commander matches as much of the line as it
 /// understands, and never looks at the rest.
-Command read_move(parol6::Move::Kind kind, Cursor& cursor, std::vector<Diagnostic>& remarks) {
+Command read_move(parol6::planning::Move::Kind kind, Cursor& cursor,
+                  std::vector<Diagnostic>& remarks) {
   constexpr double kLargestNumber = 1e6;
-  parol6::Move move{.kind = kind};
+  parol6::planning::Move move{.kind = kind};
   const auto target = take_target(cursor);
   if (!target) return stops("a move begins with six numbers like -12.5");
   move.target = *target;
@@ -158,11 +159,11 @@ Command read_move(parol6::Move::Kind kind, Cursor& cursor, std::vector<Diagnosti
   move.timing.acceleration = take_option(cursor, "a");
   move.timing.duration = take_option(cursor, "t");
   if (take_flag(cursor, "trap")) {
-    move.timing.law = parol6::Law::kTrapezoid;
+    move.timing.law = parol6::planning::Law::kTrapezoid;
   } else if (take_flag(cursor, "poly")) {
-    move.timing.law = parol6::Law::kPolynomial;
+    move.timing.law = parol6::planning::Law::kPolynomial;
   }
-  if (take_flag(cursor, "speed")) move.tracking = parol6::Tracking::kSpeed;
+  if (take_flag(cursor, "speed")) move.tracking = parol6::planning::Tracking::kSpeed;
   for (const double value : move.target) {
     if (!(std::abs(value) <= kLargestNumber)) return stops("a number is far beyond any arm");
   }

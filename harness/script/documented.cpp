@@ -161,11 +161,12 @@ Option option_of(std::string_view word) noexcept {
   return word == "speed" ? Option::kTracking : Option::kNone;
 }
 
-bool is_line(parol6::Move::Kind kind) noexcept {
-  return kind == parol6::Move::Kind::kLine || kind == parol6::Move::Kind::kToolLine;
+bool is_line(parol6::planning::Move::Kind kind) noexcept {
+  return kind == parol6::planning::Move::Kind::kLine ||
+         kind == parol6::planning::Move::Kind::kToolLine;
 }
 
-Read<void> read_value(Arguments& arguments, Option option, parol6::Timing& timing) {
+Read<void> read_value(Arguments& arguments, Option option, parol6::planning::Timing& timing) {
   if (auto equals = arguments.equals(); !equals) return equals;
   const auto read = [&](double lowest, double highest, std::string_view what,
                         std::optional<double>& into) -> Read<void> {
@@ -180,7 +181,7 @@ Read<void> read_value(Arguments& arguments, Option option, parol6::Timing& timin
 }
 
 /// Reads one of the options; `last` is the one in front of it.
-Read<Option> read_option(Arguments& arguments, parol6::Move& move, Option last) {
+Read<Option> read_option(Arguments& arguments, parol6::planning::Move& move, Option last) {
   const auto at = arguments.place();
   const auto word = arguments.word();
   const auto option = option_of(word);
@@ -198,21 +199,22 @@ Read<Option> read_option(Arguments& arguments, parol6::Move& move, Option last) 
                                  quoted(word)));
   }
   if (option == Option::kLaw) {
-    move.timing.law = word == "trap" ? parol6::Law::kTrapezoid : parol6::Law::kPolynomial;
+    move.timing.law =
+        word == "trap" ? parol6::planning::Law::kTrapezoid : parol6::planning::Law::kPolynomial;
   } else if (option == Option::kTracking) {
-    move.tracking = parol6::Tracking::kSpeed;
+    move.tracking = parol6::planning::Tracking::kSpeed;
   } else if (auto value = read_value(arguments, option, move.timing); !value) {
     return tl::unexpected{value.error()};
   }
   return option;
 }
 
-Read<Command> read_move(Arguments& arguments, parol6::Move::Kind kind) {
+Read<Command> read_move(Arguments& arguments, parol6::planning::Move::Kind kind) {
   using Names = std::array<std::string_view, 6>;
   constexpr Names kAngles{"J1", "J2", "J3", "J4", "J5", "J6"};
   constexpr Names kPose{"X", "Y", "Z", "RX", "RY", "RZ"};
-  parol6::Move move{.kind = kind};
-  const auto& names = kind == parol6::Move::Kind::kJoint ? kAngles : kPose;
+  parol6::planning::Move move{.kind = kind};
+  const auto& names = kind == parol6::planning::Move::Kind::kJoint ? kAngles : kPose;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto number = arguments.number(-kLargestNumber, kLargestNumber, names[i]);
     if (!number) return tl::unexpected{number.error()};

@@ -43,7 +43,7 @@ class Printer {
     return fmt::format("Gripper({}{}{}{}{})", gripper.position, comma_, gripper.speed, comma_,
                        gripper.current.value);
   }
-  std::string operator()(const parol6::Move& move) const {
+  std::string operator()(const parol6::planning::Move& move) const {
     auto text = fmt::format("{}({}", name_of(move.kind), to_text(move.target[0]));
     const auto add = [&](const std::string& argument) { text.append(comma_).append(argument); };
     for (std::size_t i = 1; i < move.target.size(); ++i) add(to_text(move.target[i]));
@@ -51,14 +51,14 @@ class Printer {
     if (timing.speed) add("v=" + to_text(*timing.speed));
     if (timing.acceleration) add("a=" + to_text(*timing.acceleration));
     if (timing.duration) add("t=" + to_text(*timing.duration));
-    if (timing.law) add(*timing.law == parol6::Law::kTrapezoid ? "trap" : "poly");
-    if (move.tracking == parol6::Tracking::kSpeed) add("speed");
+    if (timing.law) add(*timing.law == parol6::planning::Law::kTrapezoid ? "trap" : "poly");
+    if (move.tracking == parol6::planning::Tracking::kSpeed) add("speed");
     return text + ')';
   }
 
  private:
-  static std::string_view name_of(parol6::Move::Kind kind) noexcept {
-    using Kind = parol6::Move::Kind;
+  static std::string_view name_of(parol6::planning::Move::Kind kind) noexcept {
+    using Kind = parol6::planning::Move::Kind;
     switch (kind) {
       case Kind::kJoint:
         return "MoveJoint";

@@ -32,8 +32,9 @@ CommandFrame first_frame(const InterpreterSettings& settings, Dialect dialect) {
   return frame;
 }
 
-parol6::Rules rules_of(Dialect dialect) noexcept {
-  return dialect == Dialect::kCommander ? parol6::Rules::kCommander : parol6::Rules::kDocumented;
+parol6::planning::Rules rules_of(Dialect dialect) noexcept {
+  return dialect == Dialect::kCommander ? parol6::planning::Rules::kCommander
+                                        : parol6::planning::Rules::kDocumented;
 }
 
 std::uint64_t frames_of(const Delay& delay, Dialect dialect) noexcept {
@@ -93,8 +94,9 @@ Interpreter::Next Interpreter::go_on_moving(const JointSteps& position) {
   if (move_->sent < plan.set_points.size()) return set_point();
   if (plan.stop) return tl::unexpected{error(describe(*plan.stop))};
   const bool is_there = move_->sent == 0 || position == move_->position();
-  const bool must_hold =
-      !is_commander() && plan.tracking == parol6::Tracking::kSpeedAndPosition && !is_there;
+  const bool must_hold = !is_commander() &&
+                         plan.tracking == parol6::planning::Tracking::kSpeedAndPosition &&
+                         !is_there;
   if (must_hold && held_++ < kLongestHold) return frame_;
   move_.reset();
   if (is_commander()) return idle(position);
@@ -133,7 +135,7 @@ std::optional<Diagnostic> Interpreter::execute(const JointSteps& position) {
         frame_.gripper.mode = 1;
         return wait(1);
       },
-      [&](const parol6::Move& move) { return begin(move, position); },
+      [&](const parol6::planning::Move& move) { return begin(move, position); },
       [&](const Flaw& flaw) {
         if (flaw.effect == Flaw::Effect::kSkipped) return wait(1);
         return std::optional{error(flaw.why)};
@@ -142,11 +144,12 @@ std::optional<Diagnostic> Interpreter::execute(const JointSteps& position) {
   return std::visit(visitor, program_.statements[statement_].command);
 }
 
-std::optional<Diagnostic> Interpreter::begin(const parol6::Move& move, const JointSteps& position) {
+std::optional<Diagnostic> Interpreter::begin(const parol6::planning::Move& move,
+                                             const JointSteps& position) {
   // The path is wanted also if only speeds are sent.
   auto with_positions = move;
-  if (!is_commander()) with_positions.tracking = parol6::Tracking::kSpeedAndPosition;
-  auto plan = parol6::plan(with_positions, position, settings_.planner);
+  if (!is_commander()) with_positions.tracking = parol6::planning::Tracking::kSpeedAndPosition;
+  auto plan = parol6::planning::plan(with_positions, position, settings_.planner);
   if (!plan) return error(describe(plan.error()));
   plan->tracking = move.tracking;
   move_ = ActiveMove{statement_, position, *std::move(plan)};
@@ -158,10 +161,10 @@ std::optional<Diagnostic> Interpreter::begin(const parol6::Move& move, const Joi
 CommandFrame Interpreter::set_point() {
   const auto& point = move_->plan.set_points[move_->sent++];
   const auto tracking = move_->plan.tracking;
-  frame_.command = parol6::command_of(tracking);
+  frame_.command = parol6::planning::command_of(tracking);
   // A board that follows speeds does not look at positions. The host that was recorded leaves
   // those of the start in, the commander the path's.
-  const bool shows_start = !is_commander() && tracking == parol6::Tracking::kSpeed;
+  const bool shows_start = !is_commander() && tracking == parol6::planning::Tracking::kSpeed;
   frame_.position = shows_start ? move_->start : point.position;
   frame_.speed = point.speed;
   return frame_;

@@ -13,16 +13,16 @@
 namespace armjig::script {
 
 struct InterpreterSettings {
-  parol6::PlannerSettings planner{};  ///< its rules follow the program's dialect
-  std::uint64_t passes = 1;           ///< of a program that ends with `Loop()`; 0: for ever
-  std::uint8_t gripper_id = 0;        ///< CAN node
+  parol6::planning::PlannerSettings planner{};  ///< its rules follow the program's dialect
+  std::uint64_t passes = 1;     ///< of a program that ends with `Loop()`; 0: for ever
+  std::uint8_t gripper_id = 0;  ///< CAN node
 };
 
 /// A move that is under way.
 struct ActiveMove {
   std::size_t statement{};
   parol6::JointSteps start{};  ///< where the joints were when it was planned
-  parol6::Plan plan;
+  parol6::planning::Plan plan;
   std::size_t sent = 0;  ///< set-points that have left
 
   /// Where the plan has the joints after the newest frame. Requires `sent > 0`.
@@ -66,7 +66,7 @@ class Interpreter {
   }
   [[nodiscard]] Next go_on_moving(const parol6::JointSteps& position);
   [[nodiscard]] std::optional<Diagnostic> execute(const parol6::JointSteps& position);
-  [[nodiscard]] std::optional<Diagnostic> begin(const parol6::Move& move,
+  [[nodiscard]] std::optional<Diagnostic> begin(const parol6::planning::Move& move,
                                                 const parol6::JointSteps& position);
   [[nodiscard]] Frame set_point();
   [[nodiscard]] Frame idle(const parol6::JointSteps& position);

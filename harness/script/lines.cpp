@@ -110,8 +110,8 @@ const Name* find_similar_name(std::string_view text) noexcept {
   return name == kNames.end() ? nullptr : name;
 }
 
-std::optional<parol6::Move::Kind> move_kind(Keyword keyword) noexcept {
-  using Kind = parol6::Move::Kind;
+std::optional<parol6::planning::Move::Kind> move_kind(Keyword keyword) noexcept {
+  using Kind = parol6::planning::Move::Kind;
   switch (keyword) {
     case Keyword::kMoveJoint:
       return Kind::kJoint;

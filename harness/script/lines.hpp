@@ -71,7 +71,7 @@ struct Name {
   return keyword < Keyword::kHome;
 }
 /// The kind of a move; nothing if it is none.
-[[nodiscard]] std::optional<parol6::Move::Kind> move_kind(Keyword keyword) noexcept;
+[[nodiscard]] std::optional<parol6::planning::Move::Kind> move_kind(Keyword keyword) noexcept;
 
 /// The value of a number as `take_number` finds it; infinite if it is too large.
 [[nodiscard]] double value_of(std::string_view number) noexcept;

@@ -22,11 +22,13 @@ namespace {
 
 using parol6::JointSteps;
 using parol6::kJointCount;
-using parol6::kTick;
+using parol6::planning::kTick;
 
 double time_of(std::size_t frame) noexcept { return static_cast<double>(frame) * kTick; }
 
-double degrees_per_step(std::size_t joint) noexcept { return parol6::degrees_of(joint, Steps{1}); }
+double degrees_per_step(std::size_t joint) noexcept {
+  return parol6::planning::degrees_of(joint, Steps{1});
+}
 
 /// What one move asks of the joint that does most.
 struct Peak {
@@ -35,12 +37,12 @@ struct Peak {
   double share{};  ///< of what the joint can do
 };
 
-Peak peak_of(const parol6::Plan& plan) {
+Peak peak_of(const parol6::planning::Plan& plan) {
   Peak peak;
   for (const auto& point : plan.set_points) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const double speed = std::abs(point.speed[j].value);
-      const double share = speed / parol6::kJointRanges[j].max_speed.value;
+      const double share = speed / parol6::planning::kJointRanges[j].max_speed.value;
       if (share > peak.share) peak = {j, speed, share};
     }
   }
@@ -55,18 +57,19 @@ struct Leader {
 
 Leader leader_of(const JointSteps& from, const JointSteps& to) {
   std::array<double, kJointCount> ways{};
-  for (std::size_t j = 0; j < kJointCount; ++j) ways[j] = parol6::degrees_of(j, to[j] - from[j]);
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    ways[j] = parol6::planning::degrees_of(j, to[j] - from[j]);
   // Not a loop that keeps the longest so far: Clang 19.1.7 unrolls that one wrongly.
   const auto longest = std::ranges::max_element(ways, {}, [](double way) { return std::abs(way); });
   return {static_cast<std::size_t>(longest - ways.begin()), *longest};
 }
 
-std::string_view law_of(const parol6::Plan& plan) noexcept {
-  return plan.law == parol6::Law::kTrapezoid ? "trapezoid" : "polynomial";
+std::string_view law_of(const parol6::planning::Plan& plan) noexcept {
+  return plan.law == parol6::planning::Law::kTrapezoid ? "trapezoid" : "polynomial";
 }
 
-std::string_view tracking_of(const parol6::Plan& plan) noexcept {
-  return plan.tracking == parol6::Tracking::kSpeed ? "speed" : "speed and position";
+std::string_view tracking_of(const parol6::planning::Plan& plan) noexcept {
+  return plan.tracking == parol6::planning::Tracking::kSpeed ? "speed" : "speed and position";
 }
 
 const JointSteps& end_of(const ScheduledMove& move) noexcept {
@@ -82,17 +85,17 @@ struct Tool {
 class Kinematics {
  public:
   [[nodiscard]] Tool tool(const JointSteps& positions) const {
-    const auto pose = arm::forward(arm_, parol6::radians_of(positions));
+    const auto pose = arm::forward(arm_, parol6::planning::radians_of(positions));
     const auto angles = arm::angles_of(pose.rotation, arm::Convention::kCommander);
     return {1000.0 * pose.position,
-            {parol6::to_degrees(angles.rx), parol6::to_degrees(angles.ry),
-             parol6::to_degrees(angles.rz)}};
+            {parol6::planning::to_degrees(angles.rx), parol6::planning::to_degrees(angles.ry),
+             parol6::planning::to_degrees(angles.rz)}};
   }
 
   /// From the base to the tool, mm.
   [[nodiscard]] std::vector<ScenePoint> chain(const JointSteps& positions) const {
     std::array<arm::Pose, kJointCount + 1> frames;
-    arm::forward_all(arm_, parol6::radians_of(positions), frames);
+    arm::forward_all(arm_, parol6::planning::radians_of(positions), frames);
     std::vector<ScenePoint> points{{}};
     for (const auto& frame : frames) {
       const auto [x, y, z] = 1000.0 * frame.position;
@@ -126,7 +129,7 @@ std::vector<Plot> joint_plots(const Schedule& schedule) {
   const auto count = schedule.frames.size();
   return {joint_plot("Position of each joint", "position / deg", count,
                      [&](std::size_t i, std::size_t j) {
-                       return parol6::degrees_of(j, schedule.positions[i][j]);
+                       return parol6::planning::degrees_of(j, schedule.positions[i][j]);
                      }),
           joint_plot("Speed of each joint", "speed / (deg/s)", count,
                      [&](std::size_t i, std::size_t j) { return speed_of(schedule, i, j); }),
@@ -227,7 +230,7 @@ std::string to_csv(const Program& program, const Schedule& schedule) {
     for (const auto& position : frame.position) fmt::format_to(out, ",{}", position.value);
     for (const auto& speed : frame.speed) fmt::format_to(out, ",{}", speed.value);
     for (std::size_t j = 0; j < kJointCount; ++j) {
-      fmt::format_to(out, ",{:.6f}", parol6::degrees_of(j, positions[j]));
+      fmt::format_to(out, ",{:.6f}", parol6::planning::degrees_of(j, positions[j]));
     }
     fmt::format_to(out, ",{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", place.x, place.y, place.z,
                    angles[0], angles[1], angles[2]);

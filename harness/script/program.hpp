@@ -84,7 +84,7 @@ struct Flaw {
 };
 
 using Command = std::variant<Begin, End, Loop, Dummy, Delay, Output, GripperMove,
-                             GripperCalibration, parol6::Move, Flaw>;
+                             GripperCalibration, parol6::planning::Move, Flaw>;
 
 struct Statement {
   Place place{};

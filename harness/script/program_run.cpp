@@ -24,7 +24,8 @@ ProgramRun::ProgramRun(const Program& program, const InterpreterSettings& settin
 
 std::string ProgramRun::take_news() { return std::exchange(news_, {}); }
 
-std::optional<parol6::Activity::Ending> ProgramRun::advance(parol6::Drive& drive, Instant /*now*/) {
+std::optional<parol6::drive::Activity::Ending> ProgramRun::advance(parol6::drive::Drive& drive,
+                                                                   Instant /*now*/) {
   const auto position = drive.telemetry()->position;
   compare(position);
   if (has_ended_) return come_to_rest();
@@ -45,7 +46,7 @@ std::optional<parol6::Activity::Ending> ProgramRun::advance(parol6::Drive& drive
   return std::nullopt;
 }
 
-std::optional<parol6::Activity::Ending> ProgramRun::come_to_rest() {
+std::optional<parol6::drive::Activity::Ending> ProgramRun::come_to_rest() {
   under_way_.push_back({});
   if (++idle_frames_ < kFramesOfRest) return std::nullopt;
   return Ending{true, fmt::format("ran to its end, {} moves", moves_.size())};
@@ -68,7 +69,7 @@ void ProgramRun::compare(const parol6::JointSteps& position) {
 }
 
 /// A latched emergency stop refuses motion, and its event has ended this activity before.
-void ProgramRun::apply(parol6::Drive& drive, const parol6::CommandFrame& frame) {
+void ProgramRun::apply(parol6::drive::Drive& drive, const parol6::CommandFrame& frame) {
   if (frame.command == parol6::Command::kGoTo) {
     (void)drive.go_to(frame.position, frame.speed);
   } else if (frame.command == parol6::Command::kJog) {
@@ -104,7 +105,7 @@ std::vector<Hazard> hazards_of(const Program& program) {
     if (std::ranges::find(hazards, hazard) == hazards.end()) hazards.push_back(hazard);
   };
   for (const auto& [place, text, command] : program.statements) {
-    if (std::holds_alternative<parol6::Move>(command)) add(Hazard::kMove);
+    if (std::holds_alternative<parol6::planning::Move>(command)) add(Hazard::kMove);
     if (std::holds_alternative<Output>(command)) add(Hazard::kState);
     if (std::holds_alternative<GripperMove>(command)) add(Hazard::kGrip);
     if (std::holds_alternative<GripperCalibration>(command)) add(Hazard::kGrip);

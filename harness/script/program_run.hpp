@@ -18,7 +18,7 @@ namespace armjig::script {
 /// How well the arm followed one move, in steps and with signs: place minus set-point.
 struct MoveResult {
   std::size_t statement{};
-  parol6::Tracking tracking{};
+  parol6::planning::Tracking tracking{};
   std::array<std::int32_t, parol6::kJointCount> largest_error{};
   std::array<std::int32_t, parol6::kJointCount> final_error{};  ///< when its last set-point was due
 };
@@ -33,7 +33,7 @@ struct RunSample {
 /// A program that runs on a drive, a frame each period, until the arm stands behind its last one.
 /// Joints, outputs and gripper are the interpreter's; what a frame has besides is the drive's, and
 /// the gripper is left alone until the program says something about it.
-class ProgramRun final : public parol6::Activity {
+class ProgramRun final : public parol6::drive::Activity {
  public:
   /// The program has to outlive it.
   ProgramRun(const Program& program, const InterpreterSettings& settings);
@@ -56,10 +56,10 @@ class ProgramRun final : public parol6::Activity {
     std::size_t frame{};
   };
 
-  [[nodiscard]] std::optional<Ending> advance(parol6::Drive& drive, Instant now) override;
+  [[nodiscard]] std::optional<Ending> advance(parol6::drive::Drive& drive, Instant now) override;
   [[nodiscard]] std::optional<Ending> come_to_rest();
   void compare(const parol6::JointSteps& position);
-  void apply(parol6::Drive& drive, const parol6::CommandFrame& frame);
+  void apply(parol6::drive::Drive& drive, const parol6::CommandFrame& frame);
   [[nodiscard]] Wanted wanted();
   void tell_line();
 

@@ -25,7 +25,8 @@ std::size_t worst_of(const Errors& errors) {
 }
 
 std::string text_of(std::size_t joint, std::int32_t steps) {
-  return fmt::format("{:+} steps, {:+.3f} deg", steps, parol6::degrees_of(joint, Steps{steps}));
+  return fmt::format("{:+} steps, {:+.3f} deg", steps,
+                     parol6::planning::degrees_of(joint, Steps{steps}));
 }
 
 bool has_moved(const std::vector<RunSample>& samples, std::size_t joint) {
@@ -40,7 +41,7 @@ Series series_of(const std::vector<RunSample>& samples, std::string name, Value 
   Series series{std::move(name), {}, Shape::kLine};
   const RunSample* before = nullptr;
   for (const auto& sample : samples) {
-    const double time = parol6::kTick * static_cast<double>(sample.frame);
+    const double time = parol6::planning::kTick * static_cast<double>(sample.frame);
     if (before != nullptr && sample.frame > before->frame + 1) {
       series.points.push_back({time, std::numeric_limits<double>::quiet_NaN()});
     }
@@ -83,7 +84,7 @@ std::string to_json(const Program& program, const ProgramRun& run, const RunFact
   };
   for (const auto& move : run.moves()) {
     const auto& statement = program.statements[move.statement];
-    const bool follows_speed = move.tracking == parol6::Tracking::kSpeed;
+    const bool follows_speed = move.tracking == parol6::planning::Tracking::kSpeed;
     json["moves"].push_back({{"line", statement.place.line},
                              {"command", to_text(statement.command, program.dialect)},
                              {"tracking", follows_speed ? "speed" : "speed and position"},
@@ -105,7 +106,7 @@ RunPlots run_plots(const ProgramRun& run) {
     if (!has_moved(samples, j)) continue;
     const auto name = fmt::format("j{}", j + 1);
     plots.position.series.push_back(series_of(samples, name, [j](const RunSample& sample) {
-      return parol6::degrees_of(j, sample.seen[j]);
+      return parol6::planning::degrees_of(j, sample.seen[j]);
     }));
     plots.error.series.push_back(series_of(samples, name, [j](const RunSample& sample) {
       return static_cast<double>(sample.seen[j].value - sample.wanted[j].value);

@@ -19,7 +19,7 @@ struct RunFacts {
   std::string_view target;
   bool ran_to_end{};
   parol6::JointSteps position{};  ///< of the last telemetry
-  const parol6::DriveStatistics& link;
+  const parol6::drive::DriveStatistics& link;
 };
 
 /// One JSON object of docs/schemas/run.schema.json, "armjig.run/1".

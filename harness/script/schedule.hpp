@@ -20,7 +20,7 @@ struct ScheduledMove {
   std::size_t statement{};
   std::size_t first_frame{};
   parol6::JointSteps start{};
-  parol6::Plan plan;
+  parol6::planning::Plan plan;
 };
 
 /// Everything that a program sends, one frame each 10 ms, to an arm that is always where it was

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/timing/latency_histogram.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 
 namespace armjig {
@@ -50,6 +53,14 @@ Duration LatencyHistogram::percentile(double percent) const noexcept {
     return std::clamp(Duration{static_cast<Duration::rep>(upper_end(bucket))}, min_, max_);
   }
   return max_;
+}
+
+std::string LatencyHistogram::summary() const {
+  const auto milliseconds = [](Duration duration) {
+    return std::chrono::duration<double, std::milli>{duration}.count();
+  };
+  return fmt::format("{:.3f} / {:.3f} / {:.3f} ms", milliseconds(percentile(50)),
+                     milliseconds(percentile(99)), milliseconds(max()));
 }
 
 }  // namespace armjig

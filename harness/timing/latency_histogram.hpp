@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "harness/core/time.hpp"
 
@@ -23,6 +24,8 @@ class LatencyHistogram {
   [[nodiscard]] Duration mean() const noexcept;
   /// The least value that is not exceeded by that share of the values, `percent` from 0 to 100.
   [[nodiscard]] Duration percentile(double percent) const noexcept;
+  /// `0.123 / 0.456 / 1.789 ms` at 50 %, 99 % and the most.
+  [[nodiscard]] std::string summary() const;
 
  private:
   static constexpr unsigned kFineBits = 6;  ///< each power of two has 64 buckets

@@ -3,28 +3,9 @@
 
 #include <fmt/core.h>
 
-#include <array>
-
 #include "harness/core/hex.hpp"
-#include "harness/wire/demo/demo.hpp"
-#include "harness/wire/kinovazed/dissector.hpp"
-#include "harness/wire/morap/dissector.hpp"
-#include "harness/wire/parol6/dissector.hpp"
 
 namespace armjig {
-namespace {
-
-constexpr std::array kDissectors{
-    DissectorEntry{"demo", demo::make_dissector},
-    DissectorEntry{"kinovazed", kinovazed::make_dissector},
-    DissectorEntry{"morap", morap::make_dissector},
-    DissectorEntry{"parol6", parol6::make_dissector},
-};
-
-}  // namespace
-
-std::span<const DissectorEntry> dissectors() noexcept { return kDissectors; }
-
 std::string to_text(const Message& message) {
   auto text = fmt::format("{} {}, {} bytes", to_string(message.direction), message.name,
                           message.raw.size());

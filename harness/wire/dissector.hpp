@@ -47,14 +47,8 @@ class Dissector {
   virtual void finish(std::vector<Message>& out) = 0;
 };
 
-/// A device that this room knows.
-struct DissectorEntry {
-  std::string_view device;
-  std::unique_ptr<Dissector> (*make)();
-};
-
-/// All of them, by name.
-[[nodiscard]] std::span<const DissectorEntry> dissectors() noexcept;
+/// Makes the dissector of one device, at the beginning of its traffic.
+using MakeDissector = std::unique_ptr<Dissector> (*)();
 
 /// One line a field, the interesting ones first told by the caller's choice of message.
 [[nodiscard]] std::string to_text(const Message& message);

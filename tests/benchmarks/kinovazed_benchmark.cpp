@@ -10,6 +10,7 @@
 namespace armjig::kinovazed {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 
 void parse_joystick_lines(benchmark::State& state) {

@@ -15,9 +15,9 @@
 #include <thread>
 #include <utility>
 
-#include "emulators/host/hosted_server.hpp"
-#include "emulators/host/session_host.hpp"
+#include "emulators/host/host.hpp"
 #include "emulators/kinovazed/server.hpp"
+#include "emulators/memory/hosted.hpp"
 #include "harness/link/descriptor.hpp"
 #include "harness/link/tcp_session.hpp"
 
@@ -52,14 +52,14 @@ void ping(benchmark::State& state, const std::string& address, std::string_view 
 }
 
 void documented_server(benchmark::State& state) {
-  kinovazed::ServerOptions options;
-  options.behaviour = kinovazed::kDocumentedBehaviour;
+  kinovazed::emulation::ServerOptions options;
+  options.behaviour = kinovazed::emulation::kDocumentedBehaviour;
   options.call_time = {};
-  kinovazed::Server server{kinovazed::ArmPort{kinovazed::JacoArm{}}, options};
-  auto host = SessionHost::open(make_hosted_server(kinovazed::DefectiveServer{std::move(server)}),
-                                {.tcp = {.port = 0}});
+  kinovazed::emulation::Server server{
+      kinovazed::emulation::ArmPort{kinovazed::emulation::JacoArm{}}, options};
+  auto host = Host::open(make_hosted(std::move(server)), {.tcp = TcpOptions{}});
   std::thread thread{[&host] { host->run(); }};
-  ping(state, host->target().substr(4), kCommand, kReply.size());
+  ping(state, host->targets().front().substr(4), kCommand, kReply.size());
   host->stop();
   thread.join();
 }

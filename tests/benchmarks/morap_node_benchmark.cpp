@@ -24,8 +24,9 @@ void run_nodes(benchmark::State& state, std::uint8_t count) {
   i2c::Bus bus;
   Instant time{};
   for (std::uint8_t id = 0; id < count; ++id) {
-    const auto eeprom = dcx26l(id);
-    bus.attach(Node{{.eeprom = eeprom, .plant = plant_of(eeprom.motor, 0.05, 0.041, 0.072)}});
+    const auto eeprom = emulation::dcx26l(id);
+    bus.attach(
+        emulation::Node{{.eeprom = eeprom, .plant = plant_of(eeprom.motor, 0.05, 0.041, 0.072)}});
     time = write(bus, time, node_address(id), encode(Command{CommandId::kCalibrateZero}));
   }
   bool is_forward = false;

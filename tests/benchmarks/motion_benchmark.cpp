@@ -33,7 +33,7 @@ std::vector<arm::SixJoints> postures() {
 arm::SixJoints standby_angles() {
   arm::SixJoints joints{};
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    joints[j] = parol6::radians_of(j, parol6::standby()[j]);
+    joints[j] = parol6::planning::radians_of(j, parol6::planning::standby()[j]);
   }
   return joints;
 }
@@ -72,23 +72,24 @@ BENCHMARK(kdl_lma_one_solution);
 
 /// Six joints, 4 s at 100 Hz, checks included.
 void plan_joint_move(benchmark::State& state) {
-  const parol6::Move move{.kind = parol6::Move::Kind::kJoint,
-                          .target = {0, -60, 200, 30, 45, 90},
-                          .timing = {.duration = 4}};
-  const auto rules = state.range(0) == 0 ? parol6::Rules::kDocumented : parol6::Rules::kCommander;
+  const parol6::planning::Move move{.kind = parol6::planning::Move::Kind::kJoint,
+                                    .target = {0, -60, 200, 30, 45, 90},
+                                    .timing = {.duration = 4}};
+  const auto rules = state.range(0) == 0 ? parol6::planning::Rules::kDocumented
+                                         : parol6::planning::Rules::kCommander;
   for (auto _ : state) {
-    auto plan = parol6::plan(move, parol6::standby(), {.rules = rules});
+    auto plan = parol6::planning::plan(move, parol6::planning::standby(), {.rules = rules});
     benchmark::DoNotOptimize(plan);
   }
 }
 BENCHMARK(plan_joint_move)->ArgName("commander")->Arg(0)->Arg(1);
 
 void plan_line(benchmark::State& state) {
-  const parol6::Move move{.kind = parol6::Move::Kind::kLine,
-                          .target = {0, 263.23, 161.241, -90, 0, -89.499},
-                          .timing = {.duration = 4}};
+  const parol6::planning::Move move{.kind = parol6::planning::Move::Kind::kLine,
+                                    .target = {0, 263.23, 161.241, -90, 0, -89.499},
+                                    .timing = {.duration = 4}};
   for (auto _ : state) {
-    auto plan = parol6::plan(move, parol6::standby());
+    auto plan = parol6::planning::plan(move, parol6::planning::standby());
     benchmark::DoNotOptimize(plan);
   }
 }

@@ -9,6 +9,7 @@
 namespace armjig::parol6 {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 
 constexpr BoardTiming kTiming{.pass_period = std::chrono::microseconds{20}};

@@ -119,7 +119,7 @@ void expect_refusal(std::vector<std::string> arguments, int exit_code, const std
 
 TEST(Emulate, RefusesWrongArgumentsInOneLine) {
   expect_refusal({}, 2, "DEVICE");
-  expect_refusal({"toaster"}, 2, "demo, parol6");
+  expect_refusal({"toaster"}, 2, "there are: parol6, kinovazed, morap, demo");
   for (const auto* const speed : {"0", "-1", "nan", "inf", "fast"}) {
     expect_refusal({"demo", "--speed", speed}, 2, "speed");
   }

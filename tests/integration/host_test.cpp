@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "emulators/demo/demo.hpp"
-#include "emulators/host/devices.hpp"
 #include "emulators/host/outbox.hpp"
+#include "emulators/parol6/arm.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/link/real_streams.hpp"
 #include "harness/link/tcp_connection.hpp"
@@ -27,7 +27,6 @@ namespace armjig {
 namespace {
 
 using namespace std::chrono_literals;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 namespace fs = std::filesystem;
 
@@ -75,8 +74,8 @@ class Running {
   std::thread thread_;
 };
 
-std::unique_ptr<HostedStream> demo_device() { return make_hosted(demo::StreamDevice{}); }
-std::unique_ptr<HostedStream> parol6() { return std::move(make_hosted_device("parol6").value()); }
+std::unique_ptr<HostedStream> demo_device() { return make_hosted(demo::emulation::StreamDevice{}); }
+std::unique_ptr<HostedStream> parol6() { return make_hosted(parol6::emulation::Arm{}); }
 
 /// What comes next: `size` bytes, or fewer if they do not come.
 std::vector<std::byte> read(StreamPort& port, std::size_t size) {
@@ -132,6 +131,40 @@ TEST(Host, AnswersWhenVirtualTimeHasComeNotBefore) {
   EXPECT_GE(port->now() - asked, 100ms);
 }
 
+TEST(Host, LetsBytesTakeTheirTimeOnALine) {
+  // At 1200 baud, six characters of 11 bits take 55 ms; the demo device thinks for 1 ms.
+  HostOptions options;
+  options.pty.emplace();
+  options.line = CharacterRate{.baud = 1200, .bits = 11};
+  auto host = std::move(Host::open(demo_device(), options).value());
+  std::thread thread{[&host] { host.run(); }};
+  {
+    const auto port = open_or_die(open_pty(host.targets()[0].substr(4)));
+    const auto asked = port->now();
+    EXPECT_EQ(ask(*port), kReady);
+    EXPECT_GE(port->now() - asked, 56ms);
+  }
+  host.stop();
+  thread.join();
+}
+
+TEST(Host, LeavesToClientsWhatALineCannotTakeYet) {
+  HostOptions options;
+  options.pty.emplace();
+  options.line = CharacterRate{.baud = 1200};
+  auto host = std::move(Host::open(demo_device(), options).value());
+  std::thread thread{[&host] { host.run(); }};
+  {
+    const auto port = open_or_die(open_pty(host.targets()[0].substr(4)));
+    const auto written = port->write(std::vector<std::byte>(256 * 1024));  // 36 minutes
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::kTimedOut);
+  }
+  host.stop();
+  thread.join();
+  EXPECT_LT(host.statistics().links.bytes_in, 64U * 1024);
+}
+
 TEST(Host, CountsWhatPassed) {
   Running host{demo_device()};
   EXPECT_EQ(ask(*open_or_die(open_pty(host.pty()))), kReady);
@@ -146,6 +179,31 @@ TEST(Host, NeedsALink) {
   const auto host = Host::open(demo_device(), {});
   ASSERT_FALSE(host);
   EXPECT_EQ(host.error().code, ErrorCode::kBadValue);
+}
+
+TEST(Host, RefusesLinksThatAKindOfDeviceCannotHave) {
+  EXPECT_FALSE(Host::open(make_hosted(demo::emulation::SessionDevice{}), {.pty = PtyOptions{}}));
+  EXPECT_FALSE(Host::open(make_hosted(demo::emulation::SessionDevice{}), {}));
+  EXPECT_FALSE(Host::open(make_hosted(demo::emulation::BusDevice{}), {.tcp = TcpOptions{}}));
+}
+
+TEST(Host, LetsOthersTalkToABusInItsOwnTime) {
+  auto host = std::move(Host::open(make_hosted(demo::emulation::BusDevice{}), {}).value());
+  std::thread thread{[&host] { host.run(); }};
+  const Stopwatch clock;
+  Instant end{};
+  for (int i = 0; i < 10; ++i) {
+    host.with_bus([&end](BusPort& bus) {
+      EXPECT_GE(bus.now(), end);
+      const auto byte = std::byte{'q'};
+      const auto query = write_to(BusAddress{demo::emulation::BusDevice::kAddress}, {&byte, 1});
+      EXPECT_EQ(bus.transfer({&query, 1}), Transfer::kDone);
+      end = bus.now();
+    });
+  }
+  EXPECT_GE(clock.now(), at(2ms)) << "each transaction is 200 us long";
+  host.stop();
+  thread.join();
 }
 
 // Clients of the pseudo-terminal.
@@ -451,21 +509,6 @@ TEST_F(HostLink, LeavesALinkAloneThatLeadsElsewhereByNow) {
     fs::create_symlink("elsewhere", path);
   }
   EXPECT_EQ(fs::read_symlink(path), "elsewhere");
-}
-
-// The devices.
-
-TEST(HostedDevices, CanAllBeMadeByName) {
-  for (const auto& entry : hosted_devices()) {
-    EXPECT_TRUE(make_hosted_device(std::string{entry.device})) << entry.device;
-  }
-}
-
-TEST(HostedDevices, AreNamedWhenOneIsUnknown) {
-  const auto device = make_hosted_device("toaster");
-  ASSERT_FALSE(device);
-  EXPECT_EQ(device.error().code, ErrorCode::kUnknownDevice);
-  EXPECT_THAT(device.error().hint, HasSubstr("demo, parol6"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "emulators/host/i2c_adapter.hpp"
+#include "emulators/lab/i2c_adapter.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "emulators/host/morap_bus.hpp"
+#include "emulators/morap/options.hpp"
 #include "harness/core/hex.hpp"
 
 namespace armjig {
@@ -25,20 +25,22 @@ constexpr BusAddress kThermometer{0x48};
 constexpr BusAddress kNobody{0x30};
 
 i2c::Bus bus() {
-  return *morap::parse_bus("[[node]]\nid = 2\n[[thermometer]]\naddress = 0x48\n", "test");
+  return morap::emulation::make_bus(
+      {.nodes = {{}}, .thermometers = {i2c::Thermometer{kThermometer.value}}});
 }
 
 /// What an adapter tells its listener.
 class I2cAdapterTest : public testing::Test {
  protected:
-  int transfer(const std::vector<BusMessage>& messages) { return adapter.transfer(messages); }
+  int transfer(const std::vector<BusMessage>& messages) { return adapter->transfer(messages); }
 
   std::vector<std::string> heard;
   std::vector<Instant> times;
-  I2cAdapter adapter{bus(), [this](Instant time, Bytes message) {
-                       heard.push_back(to_hex(message));
-                       times.push_back(time);
-                     }};
+  std::unique_ptr<I2cAdapter> adapter =
+      I2cAdapter::open(make_hosted(bus()), [this](Instant time, Bytes message) {
+        heard.push_back(to_hex(message));
+        times.push_back(time);
+      }).value();
 };
 
 TEST_F(I2cAdapterTest, TellsWhatWasAcknowledgedOfEachMessage) {
@@ -63,8 +65,8 @@ TEST_F(I2cAdapterTest, LeavesOutTheByteThatWasRefused) {
 
 TEST_F(I2cAdapterTest, TellsOfSmbusCommandsToo) {
   i2c_smbus_data data{};
-  EXPECT_EQ(adapter.smbus(kNode, Access::kRead, 0x83, I2C_SMBUS_BYTE_DATA, data), 0);
-  EXPECT_EQ(adapter.smbus(kNode, Access::kWrite, 0, I2C_SMBUS_QUICK, data), 0);
+  EXPECT_EQ(adapter->smbus(kNode, Access::kRead, 0x83, I2C_SMBUS_BYTE_DATA, data), 0);
+  EXPECT_EQ(adapter->smbus(kNode, Access::kWrite, 0, I2C_SMBUS_QUICK, data), 0);
   EXPECT_THAT(heard, ElementsAre("2483", "2503", "24"));
 }
 

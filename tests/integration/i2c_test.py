@@ -95,6 +95,8 @@ def rows(folder):
         (["python3", "-c", NODE_SETTLES], 0, ["arrived"]),
         # Our own program is a program like any other.
         ([ARMJIG, "i2c", "scan", "--target", "i2c:/dev/i2c-1"], 0, ["0x11", "0x12", "0x19", "0x48"]),
+        ([ARMJIG, "i2c", "scan", "--target", "i2c:/dev/i2c-1", "--impair", "loss=100%"], 4,
+         ["!nobody answers"]),
         ([ARMJIG, "i2c", "scan", "--target", "i2c:/dev/i2c-2"], 3, ["!there is no such bus"]),
         ([ARMJIG, "i2c", "scan", "--target", "i2c:/dev/null"], 2, ["!not an I2C bus"]),
         ([ARMJIG, "i2c", "read", "0x12", "1", "--select", "88", "--target", "i2c:/dev/i2c-1"], 0,

@@ -137,6 +137,17 @@ TEST_F(PtyStream, IsFreeAgainAfterClosing) {
   EXPECT_TRUE(open_pty(terminal->path()));
 }
 
+// The C library calls it an error when parity is all that would change, and a terminal of this kind
+// has none.
+TEST_F(PtyStream, CanBeOpenedAgainWithParity) {
+  const auto terminal = PseudoTerminal::open();
+  ASSERT_TRUE(terminal);
+  for (int i = 0; i < 3; ++i) {
+    const auto port = open_pty(terminal->path(), {.baud = 1200, .parity = Parity::kEven});
+    EXPECT_TRUE(port) << describe(port.error());
+  }
+}
+
 TEST_F(PtyStream, SaysThatNothingIsThere) {
   expect_problem(open_pty(path("none")), ErrorCode::kNotFound, "is the emulator running");
 }

@@ -15,10 +15,10 @@ int main(int argc, char** argv) {
   for (const auto& [name, report] : {std::pair{"drive", armjig::test::drive_report()},
                                      std::pair{"nasty", armjig::test::nasty_report()}}) {
     const auto stem = folder + '/' + name;
-    const auto written = write_files(report, {.json = stem + ".json",
-                                              .html = stem + ".html",
-                                              .junit = stem + ".xml",
-                                              .sarif = stem + ".sarif"});
+    const auto written = write_files(report, {{"json", stem + ".json"},
+                                              {"html", stem + ".html"},
+                                              {"junit", stem + ".xml"},
+                                              {"sarif", stem + ".sarif"}});
     if (!written) {
       std::fprintf(stderr, "%s\n", describe(written.error()).c_str());
       return 3;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,6 +24,10 @@
 #include "emulators/host/host.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "harness/drive/parol6/drive_loop.hpp"
+#include "harness/link/transaction_bus.hpp"
+#include "harness/rig/morap_judge.hpp"
+#include "harness/rig/parol6_judge.hpp"
+#include "harness/rig/real_target.hpp"
 #include "harness/rig/rig.hpp"
 
 // An emulated arm behind a pseudo-terminal in this process, and a child process that moves it
@@ -31,6 +36,7 @@
 namespace armjig::parol6 {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 using Wall = std::chrono::steady_clock;
@@ -168,7 +174,7 @@ constexpr int kCannotOpen = 10;
 constexpr int kForbidden = 11;
 constexpr int kPortFailed = 12;
 
-Result<void> command(Activity activity, Drive& drive, int cycle) {
+Result<void> command(Activity activity, drive::Drive& drive, int cycle) {
   JointSpeeds slow;
   slow.fill(StepsPerSecond{cycle / 300 % 2 == 0 ? 400 : -400});
   auto goal = drive.telemetry() ? drive.telemetry()->position : JointSteps{};
@@ -188,17 +194,16 @@ Result<void> command(Activity activity, Drive& drive, int cycle) {
 
 /// Moves arms for ever, if it is let.
 int move(const std::vector<std::string>& targets, Activity activity) {
-  const auto no_emulators = [](const Target&) -> Outcome<std::unique_ptr<StreamPort>> {
-    return problem(ErrorCode::kUnsupported, "", "");
-  };
-  std::deque<Rig> rigs;
-  std::deque<Drive> drives;
-  std::deque<DriveLoop> loops;
+  const Wiring<StreamPort> wiring{
+      .device = "parol6", .make_judge = rig::make_judge, .open_real = open_target<StreamPort>};
+  std::deque<Rig<StreamPort>> rigs;
+  std::deque<drive::Drive> drives;
+  std::deque<drive::DriveLoop> loops;
   for (const auto& target : targets) {
     RigOptions options;
     options.target = parse_target(target).value();
     options.permissions = Permissions::all();
-    auto rig = Rig::open("parol6", options, no_emulators);
+    auto rig = Rig<StreamPort>::open(wiring, options);
     if (!rig) return kCannotOpen;
     rigs.push_back(*std::move(rig));
     loops.emplace_back(rigs.back().port(), drives.emplace_back());
@@ -425,6 +430,132 @@ TEST_F(SupervisorTest, OfAnArmThatStandsLeavesItAlone) {
   EXPECT_EQ(mover.wait(), -SIGKILL);
   ASSERT_TRUE(wait_until([] { return ::waitpid(-1, nullptr, WNOHANG) < 0; }));
   EXPECT_TRUE(bench.sight().is_enabled);
+}
+
+// A bus: a socket to this process, on which each message is what its adapter would be told.
+
+/// The end of a program that moves nodes.
+class SocketBus final : public RealBus {
+ public:
+  explicit SocketBus(int socket) : socket_{socket} {}
+  Result<Transfer> transfer(std::span<const BusMessage> messages) override {
+    for (const auto& message : messages) {
+      std::vector<std::byte> bytes{head_of(message)};
+      bytes.insert(bytes.end(), message.write.begin(), message.write.end());
+      send(socket_, bytes);
+    }
+    return Transfer::kDone;
+  }
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    return Lifeline{socket_, send};
+  }
+
+ private:
+  static void send(int socket, Bytes message) noexcept {
+    (void)::send(socket, message.data(), message.size(), MSG_NOSIGNAL);
+  }
+  int socket_;
+};
+
+using BusLine = std::vector<std::byte>;
+
+const BusLine kDisableNode2{std::byte{0x24}, std::byte{0}};
+const BusLine kDisableNode3{std::byte{0x26}, std::byte{0}};
+
+Result<void> command_node(BusPort& bus, std::uint8_t node) {
+  constexpr std::array kHalfTurn{std::byte{2}, std::byte{0}, std::byte{0}, std::byte{0},
+                                 std::byte{0x3F}};
+  const auto message = write_to({static_cast<std::uint8_t>(0x10 + node)}, kHalfTurn);
+  const auto sent = bus.transfer({&message, 1});
+  return sent ? Result<void>{} : tl::unexpected{sent.error()};
+}
+
+/// Moves nodes 2 and 3 and disables 3; then looks at node 2 every 20 ms.
+int move_nodes(int socket) {
+  auto bus = GuardedBus::guard(std::make_unique<SocketBus>(socket), morap::rig::make_judge(),
+                               Permissions::all());
+  if (!bus) return kCannotOpen;
+  auto& port = **bus;
+  const auto disable = write_to({0x13}, std::span{kDisableNode3}.subspan(1));
+  if (!command_node(port, 2) || !command_node(port, 3)) return kPortFailed;
+  if (!port.transfer({&disable, 1})) return kPortFailed;
+  constexpr std::array kStatus{std::byte{131}};
+  const auto look = write_to({0x12}, kStatus);
+  for (;;) {
+    if (!port.transfer({&look, 1})) return kPortFailed;
+    if (port.now() > at(2s) && !command_node(port, 2)) return kForbidden;
+    port.wait_until(port.now() + 20ms);
+  }
+}
+
+class BusSupervisorTest : public SupervisorTest {
+ protected:
+  BusSupervisorTest() {
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends_.data()), 0);
+    mover_ = ::fork();
+    if (mover_ == 0) ::_exit(move_nodes(ends_[0]));
+    ::close(ends_[0]);
+  }
+  ~BusSupervisorTest() override {
+    if (mover_ > 0) ::kill(mover_, SIGKILL);
+    ::close(ends_[1]);
+  }
+
+  /// The next message; nothing once nobody holds the bus any more.
+  [[nodiscard]] BusLine next() const {
+    BusLine line(64);
+    const auto size = ::recv(ends_[1], line.data(), line.size(), 0);
+    line.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    return line;
+  }
+  void wait_until_it_only_looks() const {
+    const BusLine look{std::byte{0x24}, std::byte{131}};
+    while (next() != look) {
+    }
+  }
+  /// What comes after the last look, until nobody holds the bus.
+  [[nodiscard]] std::vector<BusLine> last_messages() const {
+    const BusLine look{std::byte{0x24}, std::byte{131}};
+    std::vector<BusLine> all;
+    for (auto line = next(); !line.empty(); line = next()) {
+      if (line != look) all.push_back(line);
+    }
+    return all;
+  }
+  int wait_for_mover() {
+    int status = 0;
+    ::waitpid(std::exchange(mover_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+
+  std::array<int, 2> ends_{};
+  pid_t mover_ = -1;
+};
+
+TEST_F(BusSupervisorTest, StopsEachNodeThatMayBeMovingWhenItsProgramIsKilled) {
+  wait_until_it_only_looks();
+  const auto moment = Wall::now();
+  ::kill(mover_, SIGKILL);
+  EXPECT_EQ(wait_for_mover(), -SIGKILL);
+  auto line = next();
+  while (line != kDisableNode2 && !line.empty()) line = next();
+  EXPECT_LT(Wall::now() - moment, kBound);
+  const auto stops = last_messages();
+  EXPECT_GT(stops.size(), 50U) << "for a second, should the first ones not come through";
+  EXPECT_THAT(stops, ::testing::Each(kDisableNode2)) << "node 3 was known to stand";
+}
+
+TEST_F(BusSupervisorTest, StopsItWhenItsProgramHangsAndForbidsItToGoOn) {
+  wait_until_it_only_looks();
+  const auto moment = Wall::now();
+  ::kill(mover_, SIGSTOP);
+  while (next() != kDisableNode2) {
+  }
+  EXPECT_LT(Wall::now() - moment, kBound);
+  std::this_thread::sleep_for(1500ms);  // until the supervisor has ended
+  ::kill(mover_, SIGCONT);
+  EXPECT_THAT(last_messages(), ::testing::Each(kDisableNode2));
+  EXPECT_EQ(wait_for_mover(), kForbidden);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
+#include "tests/portable/recorded_devices.hpp"
 
 namespace {
 
@@ -16,9 +17,12 @@ namespace {
 std::string complaint_about(const std::string& path) {
   const auto trace = armjig::read_trace(path);
   if (!trace) return describe(trace.error());
-  const auto difference = armjig::verify(*trace);
+  const auto* const device = armjig::test::recorded_device(*trace);
+  if (device == nullptr) return path + ": no emulator replays '" + trace->device + "'";
+  const auto difference = armjig::verify(*trace, device->replay);
   if (!difference) return describe(difference.error());
-  return *difference ? path + ": different\n" + describe(**difference, *trace) : "";
+  if (!*difference) return "";
+  return path + ": different\n" + describe(**difference, *trace, device->make_dissector);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/core/hex.hpp"
 #include "harness/drive/morap/joint.hpp"
 #include "harness/link/i2c_tiny_usb.hpp"
 #include "tests/integration/support/program.hpp"
@@ -102,11 +103,31 @@ TEST_F(UsbAdapterBench, CarriesWhatADriveSaysAndHears) {
   const Plugged adapter{bench_, kAdapter};
   const auto port = opened();
   ASSERT_TRUE(port);
-  morap::Master master{*port};
-  morap::Joint joint{master, kNode};
-  EXPECT_EQ(joint.calibrate(morap::Angle{1.0F}), morap::BusCode::kOk);
+  morap::drive::Master master{*port};
+  morap::drive::Joint joint{master, kNode};
+  EXPECT_EQ(joint.calibrate(morap::drive::Angle{1.0F}), morap::drive::BusCode::kOk);
   // captures/morap: 1 rad is 18840 counts, which read as 0.9999935
   EXPECT_FLOAT_EQ(joint.angle().value.value, 0.9999935F);
+}
+
+TEST_F(UsbAdapterBench, TheLastMessageOfAProgramStopsANode) {
+  const Plugged adapter{bench_, kAdapter};
+  const auto port = opened();
+  ASSERT_TRUE(port);
+  morap::drive::Master master{*port};
+  morap::drive::Joint joint{master, kNode};
+  ASSERT_EQ(joint.calibrate(morap::drive::Angle{0.0F}), morap::drive::BusCode::kOk);
+  const auto moves = from_hex("02 00 00 80 3F").value();
+  const auto reference = write_to(kNode, moves);
+  ASSERT_EQ(port->transfer({&reference, 1}), Transfer::kDone);
+  const auto lifeline = port->lifeline();
+  ASSERT_TRUE(lifeline);
+  lifeline->send(lifeline->descriptor, from_hex("24 00").value());
+  const auto select = from_hex("83").value();
+  std::array<std::byte, 1> status{};
+  ASSERT_EQ(port->transfer(std::array{write_to(kNode, select), read_from(kNode, status)}),
+            Transfer::kDone);
+  EXPECT_EQ(status[0], std::byte{2}) << "disabled";
 }
 
 TEST_F(UsbAdapterBench, KnowsBothNumbersOfTheFamily) {

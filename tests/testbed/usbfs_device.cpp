@@ -169,6 +169,8 @@ int UsbfsDevice::answer(UMockdevIoctlClient* client) {
       return 0;
     case USBDEVFS_SUBMITURB:
       return submit(argument);
+    case USBDEVFS_CONTROL:
+      return write_at_once(argument);
     case USBDEVFS_DISCARDURB:
       return discard(argument);
     case USBDEVFS_REAPURBNDELAY:
@@ -197,6 +199,19 @@ int UsbfsDevice::submit(UMockdevIoctlData* argument) {
   store(*urb, offsetof(usbdevfs_urb, actual_length), std::max(moved, 0));
   ended_.push_back(urb->client_addr);
   return 0;
+}
+
+/// Without libusb.
+int UsbfsDevice::write_at_once(UMockdevIoctlData* argument) {
+  const auto call = behind(argument, 0, sizeof(usbdevfs_ctrltransfer));
+  if (!call) return EFAULT;
+  const auto setup = load<usbdevfs_ctrltransfer>(*call);
+  const auto data = behind(call.get(), offsetof(usbdevfs_ctrltransfer, data), setup.wLength);
+  if (!data) return EFAULT;
+  if (std::byte{setup.bRequestType} != kVendorOut) return EPIPE;
+  std::vector<std::byte> bytes(setup.wLength);
+  std::memcpy(bytes.data(), data->data, bytes.size());
+  return control_.write({setup.bRequest, setup.wValue, setup.wIndex}, bytes) ? 0 : EPIPE;
 }
 
 int UsbfsDevice::discard(UMockdevIoctlData* argument) {

@@ -48,6 +48,7 @@ class UsbfsDevice {
   // These run on a thread of the library. They return an error number.
   int answer(UMockdevIoctlClient* client);
   int submit(UMockdevIoctlData* argument);
+  int write_at_once(UMockdevIoctlData* argument);
   int discard(UMockdevIoctlData* argument);
   int reap(UMockdevIoctlData* argument);
   /// The bytes that were moved, or minus an error number.

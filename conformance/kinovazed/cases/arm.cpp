@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <string_view>
+#include "conformance/kinovazed/cases.hpp"
 
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/ways.hpp"
-
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
 /// A mode that cannot be read, once: the server notices at its next look.
-template <State state>
+template <emulation::State state>
 void silent_stop(ServerBench& server) {
   enter(server, state);
   server.touch("arm.fail.status_read", 1);
@@ -96,11 +91,8 @@ constexpr Case kCases[] = {
        "steering"),
     in(kIdle, "kinovazed.arm.recovers", "Initialized, and beat 21.", on<recovers>),
     in(kIdle, "kinovazed.arm.position-read", "No word, and beat 21.", on<position_read>),
-    {.requirement = "kinovazed.arm.take-control",
-     .rule = "No word for 6 s, and beat 3.",
-     .run = on<take_control>,
-     .hazard = Hazard::kMove,
-     .start = kOff},
+    from(kOff, Hazard::kMove, "kinovazed.arm.take-control", "No word for 6 s, and beat 3.",
+         on<take_control>),
     in(kIdle, "kinovazed.arm.button", "No word for 6 s, and beat 3.", on<button>),
     in(kIdle, "kinovazed.arm.erase", "No word for 6 s, and beat 3.", on<erase>),
     in(kIdle, "kinovazed.arm.release", "Freezed, and beat 3.", on<release>),
@@ -114,4 +106,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> arm_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <array>
-#include <string>
-#include <utility>
+#include "conformance/kinovazed/cases.hpp"
 
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/ways.hpp"
-#include "conformance/kinovazed/wording.hpp"
-
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
-template <State state>
+template <emulation::State state>
 void value(ServerBench& server) {
   enter(server, state);
   server.expect_beat(beat_of(state));
@@ -146,4 +137,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> beat_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

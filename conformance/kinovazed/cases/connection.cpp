@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/wording.hpp"
+#include "conformance/kinovazed/cases.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 void connect_anew(ServerBench& server) {
   server.leave();
@@ -171,10 +167,8 @@ constexpr Case kCases[] = {
     {.requirement = "kinovazed.connection.waiting-bytes",
      .rule = "EStop of a waiting client is answered in its turn.",
      .run = on<waiting_bytes>},
-    {.requirement = "kinovazed.connection.waiting-closed",
-     .rule = "QuitEStop of a client that waited and left takes effect.",
-     .run = on<waiting_closed>,
-     .hazard = Hazard::kState},
+    from(kStopped, Hazard::kState, "kinovazed.connection.waiting-closed",
+         "QuitEStop of a client that waited and left takes effect.", on<waiting_closed>),
     {.requirement = "kinovazed.connection.again",
      .rule = "Three clients one after the other are served.",
      .run = on<again>},
@@ -184,36 +178,24 @@ constexpr Case kCases[] = {
     {.requirement = "kinovazed.connection.half-close",
      .rule = "EStop and a half-close give Accepted and the end.",
      .run = on<half_close>},
-    {.requirement = "kinovazed.connection.half-close-unfinished",
-     .rule = "QuitEStop without LF and a half-close give the end, and the state stays.",
-     .run = on<half_close_unfinished>,
-     .hazard = Hazard::kState},
+    from(kStopped, Hazard::kState, "kinovazed.connection.half-close-unfinished",
+         "QuitEStop without LF and a half-close give the end, and the state stays.",
+         on<half_close_unfinished>),
     {.requirement = "kinovazed.connection.unfinished",
      .rule = "Half a word of the client before does not spoil a line.",
      .run = on<unfinished>},
-    {.requirement = "kinovazed.connection.keeps-state",
-     .rule = "A client that connects while the server is steering may move.",
-     .run = on<keeps_state>,
-     .hazard = Hazard::kMove,
-     .start = kSteering},
-    {.requirement = "kinovazed.connection.no-watchdog",
-     .rule = "ObjectiveDone comes to the client that connected during the run.",
-     .run = on<no_watchdog>,
-     .hazard = Hazard::kMove,
-     .start = kReady},
-    {.requirement = "kinovazed.connection.dropped",
-     .rule = "JoystickModeSet is not kept for who connects later.",
-     .run = on<dropped>,
-     .hazard = Hazard::kMove,
-     .start = kReady},
-    {.requirement = "kinovazed.connection.stays-open",
-     .rule = "A client that is silent for 6 s is answered then.",
-     .run = on<stays_open>,
-     .tier = Tier::kFull},
+    from(kSteering, Hazard::kMove, "kinovazed.connection.keeps-state",
+         "A client that connects while the server is steering may move.", on<keeps_state>),
+    from(kReady, Hazard::kMove, "kinovazed.connection.no-watchdog",
+         "ObjectiveDone comes to the client that connected during the run.", on<no_watchdog>),
+    from(kReady, Hazard::kMove, "kinovazed.connection.dropped",
+         "JoystickModeSet is not kept for who connects later.", on<dropped>),
+    full(from(kStopped, Hazard::kObserve, "kinovazed.connection.stays-open",
+              "A client that is silent for 6 s is answered then.", on<stays_open>)),
 };
 
 }  // namespace
 
 std::span<const Case> connection_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <string_view>
+#include "conformance/kinovazed/cases.hpp"
 
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/ways.hpp"
-
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
 using Recovery = ServerBench::Recovery;
 
@@ -143,12 +138,7 @@ void lives_at_accept(ServerBench& server) {
 }
 
 constexpr Case dies(std::string_view requirement, std::string_view rule, void (*run)(Bench&)) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kCrash,
-          .tier = Tier::kFull,
-          .start = kReady};
+  return full(from(kReady, Hazard::kCrash, requirement, rule, run));
 }
 
 constexpr Case kCases[] = {
@@ -177,4 +167,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> death_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

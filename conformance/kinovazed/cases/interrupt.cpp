@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/ways.hpp"
+#include "conformance/kinovazed/cases.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
 /// Longer than what was interrupted would have taken with any arm.
 constexpr Duration kLater = 6s;
 
-template <State state>
+template <emulation::State state>
 void estop(ServerBench& server) {
   enter(server, state);
   server.accept("EStop");
@@ -145,4 +142,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> interrupt_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <string>
+#include "conformance/kinovazed/cases.hpp"
 
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/ways.hpp"
-#include "conformance/kinovazed/wording.hpp"
-
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
 constexpr auto kStop = "MoveJoystick:0:0:0";
 constexpr auto kUp = "MoveJoystick:0:0:400";
@@ -173,16 +166,9 @@ constexpr Case kCases[] = {
     in(kIdle, "kinovazed.joystick.holds", "Two seconds up, and Home is far away.", on<holds>),
     in(kIdle, "kinovazed.joystick.client-lost",
        "Two seconds up without a client, and Home is far away.", on<client_lost>),
-    {.requirement = "kinovazed.mode.guard",
-     .rule = "Accepted, and then nothing, not even a beat.",
-     .run = on<guard>,
-     .hazard = Hazard::kCrash,
-     .start = kReady},
-    {.requirement = "kinovazed.mode.no-guard",
-     .rule = "EStop is answered.",
-     .run = on<no_guard>,
-     .hazard = Hazard::kCrash,
-     .start = kReady},
+    from(kReady, Hazard::kCrash, "kinovazed.mode.guard",
+         "Accepted, and then nothing, not even a beat.", on<guard>),
+    from(kReady, Hazard::kCrash, "kinovazed.mode.no-guard", "EStop is answered.", on<no_guard>),
     in(kIdle, "kinovazed.mode.late-enough", "The second mode is set.", on<late_enough>),
 };
 
@@ -190,4 +176,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> joystick_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

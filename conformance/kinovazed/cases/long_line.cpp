@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <string>
-#include <string_view>
+#include "conformance/kinovazed/cases.hpp"
 
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// EStop with blanks in front, so many bytes without the LF.
 std::string padded(std::size_t size) { return std::string(size - 5, ' ') + "EStop"; }
@@ -217,4 +211,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> long_line_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdint>
-#include <string>
-#include <string_view>
+#include "conformance/kinovazed/cases.hpp"
 
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/ways.hpp"
-#include "conformance/kinovazed/wording.hpp"
-
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
 Heard run(ServerBench& server, std::string_view objective) {
   return server.perform("RunObjective:" + std::string{objective}, Event::kObjectiveDone,
@@ -147,4 +139,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> objective_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

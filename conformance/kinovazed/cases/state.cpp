@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <span>
-#include <string>
-#include <string_view>
+#include "conformance/kinovazed/cases.hpp"
 
-#include "conformance/kinovazed/chapters.hpp"
-#include "conformance/kinovazed/server_bench.hpp"
-#include "conformance/kinovazed/ways.hpp"
-
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace std::chrono_literals;
 using namespace std::string_view_literals;
-using enum State;
+using enum emulation::State;
 
 /// EStop comes in any state, and what it ended is not told.
-template <State state>
+template <emulation::State state>
 void estop(ServerBench& server) {
   enter(server, state);
   server.accept("EStop");
@@ -81,7 +73,7 @@ constexpr std::array kNotInFrozen{"QuitEStop"sv,
                                   "MoveJoystick:0:0:0"sv,
                                   "RunObjective:Home"sv};
 
-template <State state, const auto& commands>
+template <emulation::State state, const auto& commands>
 void refused(ServerBench& server) {
   enter(server, state);
   refuse_all(server, commands);
@@ -89,7 +81,7 @@ void refused(ServerBench& server) {
 }
 
 /// Of states that end by themselves.
-template <State state, const auto& commands, Event event>
+template <emulation::State state, const auto& commands, Event event>
 void refused_until(ServerBench& server) {
   enter(server, state);
   refuse_all(server, commands);
@@ -208,26 +200,19 @@ constexpr Case kCases[] = {
              on<estop<kRunningSequence>>)),
     quick(in(kFrozen, "kinovazed.state.frozen.estop", "Accepted, and beat 3.", on<estop<kFrozen>>)),
 
-    {.requirement = "kinovazed.state.start",
-     .rule = "The first beat of a fresh server says emergencyStopped.",
-     .run = on<start>,
-     .start = kFresh},
+    from(kFresh, Hazard::kObserve, "kinovazed.state.start",
+         "The first beat of a fresh server says emergencyStopped.", on<start>),
     in(kEmergencyStopped, "kinovazed.state.table",
        "All modes and objectives are Rejected in emergencyStopped.", on<table>),
 
-    {.requirement = "kinovazed.state.stopped.quit-estop",
-     .rule = "Accepted, and beat 1.",
-     .run = on<stopped_quit>,
-     .hazard = Hazard::kState},
+    from(kStopped, Hazard::kState, "kinovazed.state.stopped.quit-estop", "Accepted, and beat 1.",
+         on<stopped_quit>),
     in(kEmergencyStopped, "kinovazed.state.stopped.refused", "Eight commands, and beat 3.",
        on<refused<kEmergencyStopped, kAllButStops>>),
 
     in(kPoweredOff, "kinovazed.state.off.quit-estop", "Accepted, and beat 1.", on<off_quit>),
-    {.requirement = "kinovazed.state.off.initialize",
-     .rule = "Initialized, and beat 21.",
-     .run = on<initialize>,
-     .hazard = Hazard::kMove,
-     .start = kOff},
+    from(kOff, Hazard::kMove, "kinovazed.state.off.initialize", "Initialized, and beat 21.",
+         on<initialize>),
     in(kPoweredOff, "kinovazed.state.off.refused", "Seven commands, and beat 1.",
        on<refused<kPoweredOff, kAllButInitialize>>),
 
@@ -286,4 +271,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> state_cases() noexcept { return kCases; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/kinovazed/chapters.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
 constexpr auto kSilent = "document is silent; our reading";
@@ -140,4 +140,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> line_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/kinovazed/chapters.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
 constexpr auto kChoice = "document is silent; our choice";
@@ -63,4 +63,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> long_line_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

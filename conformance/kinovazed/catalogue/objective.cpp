@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/kinovazed/chapters.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
 constexpr Requirement kRequirements[] = {
@@ -70,4 +70,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> objective_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/kinovazed/host/checker.hpp"
+#include "conformance/kinovazed/host/check.hpp"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,7 @@
 #include "conformance/kinovazed/host/conduct.hpp"
 #include "conformance/kinovazed/host/lines.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::programs {
 namespace {
 
 class HostChecker final : public ProgramChecker {
@@ -111,11 +111,7 @@ class HostChecker final : public ProgramChecker {
     if (!clients_.empty()) conduct_.begin(now_);
   }
 
-  Complain complain_ = [this](std::string_view requirement, std::string what) {
-    add(now_, requirement, std::move(what));
-  };
   Duration noise_;
-  Instant now_{};
   std::size_t messages_ = 0;
   Conduct conduct_;
   std::map<Id, Client> clients_;  ///< the first one is served
@@ -124,8 +120,8 @@ class HostChecker final : public ProgramChecker {
 
 }  // namespace
 
-std::unique_ptr<ProgramChecker> make_host_checker(const LinkNoise& noise) {
-  return std::make_unique<HostChecker>(noise);
+ProgramCheckEntry program_check() noexcept {
+  return {"kinovazed", host_requirements, make_checker<HostChecker>};
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::programs

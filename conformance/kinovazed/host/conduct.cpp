@@ -10,11 +10,12 @@
 
 #include "harness/drive/kinovazed/drive.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::programs {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
-using enum State;
+using enum emulation::State;
 
 /// In which a server answers (kinovazed.time.answer).
 constexpr Duration kAnswer = 500ms;
@@ -89,10 +90,6 @@ std::string_view requirement_of(State state, Verb verb, bool is_stop_unasked) no
                                      : "kinovazed.host.nothing-to-undo";
 }
 
-double milliseconds(Duration time) {
-  return std::chrono::duration<double, std::milli>{time}.count();
-}
-
 }  // namespace
 
 void Conduct::begin(Instant time) noexcept {
@@ -136,7 +133,7 @@ void Conduct::command(Instant time, const Command& command, const Complain& comp
   if (requests_.empty()) judge_state(time, command, complain);
   judge_joystick(time, command, complain);
   judge_objective(command, complain);
-  if (is_answered(command.verb)) requests_.push_back({.command = command, .sent = time});
+  if (drive::is_answered(command.verb)) requests_.push_back({.command = command, .sent = time});
 }
 
 /// Whether the documents let it come before the answers that are still to come.
@@ -168,7 +165,7 @@ bool Conduct::is_allowed(Instant time, Verb verb) const noexcept {
 
 void Conduct::judge_state(Instant time, const Command& command, const Complain& complain) const {
   const auto verb = command.verb;
-  if (!state_ || !is_answered(verb) || is_allowed(time, verb)) return;
+  if (!state_ || !drive::is_answered(verb) || is_allowed(time, verb)) return;
   complain(requirement_of(*state_, verb, is_stop_unasked_),
            fmt::format("{} came in state {}", to_string(verb), to_string(*state_)));
 }
@@ -236,7 +233,7 @@ void Conduct::tick(Instant time, const Complain& complain) {
 /// What has an event of its own a documented server accepts without a word.
 void Conduct::give_up_waiting(Instant time) {
   while (!requests_.empty() && time - requests_.front().sent > kAnswer + noise_) {
-    const bool may_be_accepted = event_of(requests_.front().command.verb).has_value();
+    const bool may_be_accepted = drive::event_of(requests_.front().command.verb).has_value();
     accept_first(time);
     if (!may_be_accepted) enter(time, std::nullopt);
   }
@@ -278,8 +275,9 @@ void Conduct::take_reply(Instant time, Event reply) {
 
 void Conduct::take_event(Instant time, Event event) {
   const auto before = state_;
-  const auto asked = std::ranges::find_if(
-      requests_, [event](const Request& each) { return event_of(each.command.verb) == event; });
+  const auto asked = std::ranges::find_if(requests_, [event](const Request& each) {
+    return drive::event_of(each.command.verb) == event;
+  });
   if (asked != requests_.end()) {
     led_here_ = asked->command.verb;
     overtaken_ = time;
@@ -317,4 +315,4 @@ void Conduct::take_beat(Instant time, Heartbeat beat) noexcept {
   before_until_ = time + (before ? kReaction : Duration{}) + noise_;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::programs

@@ -5,12 +5,12 @@
 #include <deque>
 #include <optional>
 
-#include "conformance/kinovazed/host/complain.hpp"
+#include "conformance/program_checker.hpp"
 #include "emulators/kinovazed/machine.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/kinovazed/line.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::programs {
 
 /// Judges when the client that is served says what, given what the server has told it. Whether an
 /// answer is missing for ever or belongs to a documented server, which accepts some commands
@@ -39,7 +39,7 @@ class Conduct {
   };
 
   void give_up_waiting(Instant time);
-  void enter(Instant time, std::optional<State> state) noexcept;
+  void enter(Instant time, std::optional<emulation::State> state) noexcept;
   void accept_first(Instant time);
   void take_reply(Instant time, Event reply);
   void take_event(Instant time, Event event);
@@ -60,9 +60,9 @@ class Conduct {
   std::deque<Request> requests_;      ///< without an answer, oldest first
   std::optional<Instant> overtaken_;  ///< when an event came whose Accepted did not come yet
 
-  std::optional<State> state_;  ///< as the client can know it
+  std::optional<emulation::State> state_;  ///< as the client can know it
   Instant entered_{};
-  std::optional<State> before_;  ///< for a client that has not read of the change yet
+  std::optional<emulation::State> before_;  ///< for a client that has not read of the change yet
   Instant before_until_{};
   std::optional<Verb> led_here_;
   bool is_stop_unasked_ = false;
@@ -74,4 +74,4 @@ class Conduct {
   std::deque<Instant> moves_;        ///< the last ones of the joystick
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::programs

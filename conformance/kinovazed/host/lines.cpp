@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::programs {
 namespace {
 
 constexpr std::size_t kLongestLine = 127;
@@ -132,4 +132,4 @@ void Lines::end(const Complain& complain) const {
   complain("kinovazed.host.line-finished", fmt::format("{} has no end", shown(splitter_.held())));
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::programs

@@ -5,12 +5,12 @@
 #include <functional>
 #include <string_view>
 
-#include "conformance/kinovazed/host/complain.hpp"
+#include "conformance/program_checker.hpp"
 #include "harness/core/bytes.hpp"
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/kinovazed/line_splitter.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::programs {
 
 /// Judges what one client writes by its lines alone, and finds the commands in them.
 class Lines {
@@ -30,4 +30,4 @@ class Lines {
   bool is_endless_ = false;  ///< the line that is coming was judged as too long
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::programs

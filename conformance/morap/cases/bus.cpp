@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <string>
-#include <vector>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
-
-using namespace std::chrono_literals;
-using enum CommandId;
 
 void poke_is_harmless(NodeBench& node) {
   node.send(kReadMotorStatus);
@@ -131,11 +122,8 @@ void write_wraps(NodeBench& node) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "morap.bus.poke-harmless",
-     .rule = "The chosen status is still read behind it.",
-     .run = on<poke_is_harmless>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
+    from(kUncalibrated, Hazard::kState, "morap.bus.poke-harmless",
+         "The chosen status is still read behind it.", on<poke_is_harmless>),
     {.requirement = "morap.bus.reserved", .rule = "All of them are asked.", .run = on<reserved>},
     {.requirement = "morap.bus.general-call", .rule = "00 is asked.", .run = on<general_call>},
     {.requirement = "morap.bus.other-node",
@@ -144,73 +132,37 @@ constexpr Case kCases[] = {
     {.requirement = "morap.bus.seven-bits",
      .rule = "A choice at an address that differs in bit 6 leaves its own alone.",
      .run = on<seven_bits>},
-    {.requirement = "morap.bus.acknowledges",
-     .rule = "Commands without payload.",
-     .run = on<acknowledges>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.acknowledges-float",
-     .rule = "A position reference, not calibrated.",
-     .run = on<acknowledges_float>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.acknowledges-tune",
-     .rule = "A tuning message.",
-     .run = on<acknowledges_tune>,
-     .hazard = Hazard::kProgram,
-     .start = kProgrammable},
-    {.requirement = "morap.bus.acknowledges-unknown",
-     .rule = "Some of all unknown identifiers.",
-     .run = on<acknowledges_unknown>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.acknowledges-surplus",
-     .rule = "Surplus behind commands that are safe with it.",
-     .run = on<acknowledges_surplus>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.acknowledges-refused",
-     .rule = "Five coefficients are too many.",
-     .run = on<acknowledges_refused>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.repeated-start",
-     .rule = "Status and address, chosen without a stop.",
-     .run = on<repeated_start>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.without-stop",
-     .rule = "A reference without a stop is read back.",
-     .run = on<without_stop>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.restart-cuts",
-     .rule = "Half a reference, and what would be its other half.",
-     .run = on<restart_cuts>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.clock-while-tuning",
-     .rule = "A tuning message takes hardly longer than its bits.",
-     .run = on<clock_while_tuning>,
-     .hazard = Hazard::kProgram,
-     .start = kProgrammable},
+    from(kUncalibrated, Hazard::kState, "morap.bus.acknowledges", "Commands without payload.",
+         on<acknowledges>),
+    from(kUncalibrated, Hazard::kState, "morap.bus.acknowledges-float",
+         "A position reference, not calibrated.", on<acknowledges_float>),
+    from(kProgrammable, Hazard::kProgram, "morap.bus.acknowledges-tune", "A tuning message.",
+         on<acknowledges_tune>),
+    from(kUncalibrated, Hazard::kState, "morap.bus.acknowledges-unknown",
+         "Some of all unknown identifiers.", on<acknowledges_unknown>),
+    from(kUncalibrated, Hazard::kState, "morap.bus.acknowledges-surplus",
+         "Surplus behind commands that are safe with it.", on<acknowledges_surplus>),
+    from(kUncalibrated, Hazard::kState, "morap.bus.acknowledges-refused",
+         "Five coefficients are too many.", on<acknowledges_refused>),
+    from(kUncalibrated, Hazard::kState, "morap.bus.repeated-start",
+         "Status and address, chosen without a stop.", on<repeated_start>),
+    from(kUncalibrated, Hazard::kState, "morap.bus.without-stop",
+         "A reference without a stop is read back.", on<without_stop>),
+    from(kUncalibrated, Hazard::kState, "morap.bus.restart-cuts",
+         "Half a reference, and what would be its other half.", on<restart_cuts>),
+    from(kProgrammable, Hazard::kProgram, "morap.bus.clock-while-tuning",
+         "A tuning message takes hardly longer than its bits.", on<clock_while_tuning>),
     {.requirement = "morap.bus.clock-before-read",
      .rule = "A read takes hardly longer than its bits.",
      .run = on<clock_before_read>},
-    {.requirement = "morap.bus.long-unknown",
-     .rule = "The chosen status is still read.",
-     .run = on<long_unknown>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.bus.write-wraps",
-     .rule = "256 bytes that mean nothing, and a choice.",
-     .run = on<write_wraps>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
+    from(kUncalibrated, Hazard::kState, "morap.bus.long-unknown",
+         "The chosen status is still read.", on<long_unknown>),
+    from(kFresh, Hazard::kState, "morap.bus.write-wraps",
+         "256 bytes that mean nothing, and a choice.", on<write_wraps>),
 };
 
 }  // namespace
 
 std::span<const Case> bus_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

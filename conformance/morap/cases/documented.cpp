@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <cmath>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-#include "conformance/morap/sets.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-using enum CommandId;
 using enum ProgrammingStatus;
 
 void other_kind(NodeBench& node) {
-  node.send_bytes("20 02 71 02 01 00 00 80 3F 01 00 00 80 3F 01 00 00 00 00 00 00 00 00 08");
-  node.expect_programming(kFailure);
+  expect_outcome(node, "20 02 71 02 01 00 00 80 3F 01 00 00 80 3F 01 00 00 00 00 00 00 00 00 08",
+                 kFailure);
 }
 
 void zero_rate(NodeBench& node) {
@@ -25,15 +17,11 @@ void zero_rate(NodeBench& node) {
   node.expect_programming(kFailure);
 }
 
-void zero_pole(NodeBench& node) {
-  node.send_bytes("22 00 CD CC 4C 3E 00 00 00 00");
-  node.expect_programming(kFailure);
-}
+void zero_pole(NodeBench& node) { expect_outcome(node, "22 00 CD CC 4C 3E 00 00 00 00", kFailure); }
 
 void no_inertia(NodeBench& node) {
   node.needs_emulation();
-  node.send_bytes("22 00 00 00 00 00 00 00 10 C1");
-  node.expect_programming(kFailure);
+  expect_outcome(node, "22 00 00 00 00 00 00 00 10 C1", kFailure);
 }
 
 template <CommandId id>
@@ -66,7 +54,7 @@ void brake(NodeBench& node) {
 
 constexpr Case one(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
                    Start start, Hazard hazard) {
-  return {.requirement = requirement, .rule = rule, .run = run, .hazard = hazard, .start = start};
+  return from(start, hazard, requirement, rule, run);
 }
 
 constexpr Case kCases[] = {
@@ -89,4 +77,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> documented_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Levels are steps of 48/1024 V. 0.75 V are 16, 0.1875 V are 4; others are the nearest.
-#include <initializer_list>
-#include <string_view>
+#include "conformance/morap/cases.hpp"
 
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-#include "conformance/morap/sets.hpp"
-#include "harness/core/hex.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
-
-using enum CommandId;
 
 constexpr std::uint16_t kRate = 200;
 
@@ -35,6 +27,16 @@ constexpr int kCounts = 10;
 float gain_of_counts(NodeBench& node) {
   const auto count = decode_float(slice<4>(Bytes{*from_hex(node.motor().one_count)}, 0));
   return 0.25F / (static_cast<float>(kCounts) * count);
+}
+
+/// The same behind a turn, with a reference of 0.
+void run_turned(NodeBench& node, const ControllerSet& set) {
+  node.send(set);
+  node.send(kCalibrateZero);
+  node.turn(kCounts);
+  node.tick();
+  node.send(kPosition, 0.0F);
+  node.tick(kRate);
 }
 
 void one_tick_late(NodeBench& node) {
@@ -99,12 +101,7 @@ void begins_with_reference(NodeBench& node) {
 
 void begins_with_angle(NodeBench& node) {
   const float gain = gain_of_counts(node);
-  node.send(position_set({gain, gain}, {0.0F}, {0.0F}));
-  node.send(kCalibrateZero);
-  node.turn(kCounts);
-  node.tick();
-  node.send(kPosition, 0.0F);
-  node.tick(kRate);
+  run_turned(node, position_set({gain, gain}, {0.0F}, {0.0F}));
   node.expect_levels_at_ticks({-11, -11});  // twice -0.25 V
 }
 
@@ -114,12 +111,7 @@ void integral_of_reference(NodeBench& node) {
 }
 
 void integral_of_angle(NodeBench& node) {
-  node.send(position_set({0.0F}, {0.0F}, {0.0F}, 0.75F * gain_of_counts(node)));
-  node.send(kCalibrateZero);
-  node.turn(kCounts);
-  node.tick();
-  node.send(kPosition, 0.0F);
-  node.tick(kRate);
+  run_turned(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.75F * gain_of_counts(node)));
   node.expect_levels_at_ticks({-4, -8, -12});
 }
 
@@ -225,11 +217,7 @@ void reenabled_goes_on(NodeBench& node) {
 }
 
 constexpr Case loop(std::string_view requirement, std::string_view rule, void (*run)(Bench&)) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kProgram,
-          .start = kFresh};
+  return from(kFresh, Hazard::kProgram, requirement, rule, run);
 }
 
 constexpr Case kCases[] = {
@@ -268,4 +256,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> loop_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
-
-using namespace std::chrono_literals;
-using enum CommandId;
 
 /// How far the shaft turns in a time, rad.
 float turned(NodeBench& node, Duration time) {
@@ -137,11 +127,7 @@ void coasts(NodeBench& node) {
 }
 
 constexpr Case moving(std::string_view requirement, std::string_view rule, void (*run)(Bench&)) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kMove,
-          .start = kFree};
+  return from(kFree, Hazard::kMove, requirement, rule, run);
 }
 
 constexpr Case kCases[] = {
@@ -161,4 +147,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> motion_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <cmath>
-#include <limits>
-#include <string>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-#include "conformance/morap/sets.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
-
-using enum CommandId;
 
 void voltage_close(NodeBench& node) {
   for (const float volts : {0.5F, 1.0F, 1.5F}) {
@@ -110,21 +100,22 @@ void current_limit_negative(NodeBench& node) {
 
 constexpr int kMostLevels = 427;  // 20.015625 V
 
-void overspeed(NodeBench& node) {
+/// At 1 V; to the first tick behind it.
+void turn_fast(NodeBench& node) {
   calibrate(node);
   node.send(kVoltage, 1.0F);
   node.ticks(2);
   node.turn(1000);
   node.tick();
+}
+
+void overspeed(NodeBench& node) {
+  turn_fast(node);
   node.expect_levels(kMostLevels);
 }
 
 void speed_unfiltered(NodeBench& node) {
-  calibrate(node);
-  node.send(kVoltage, 1.0F);
-  node.ticks(2);
-  node.turn(1000);
-  node.tick();
+  turn_fast(node);
   node.about("one tick behind the turn");
   node.tick();
   node.expect_levels(21);
@@ -283,29 +274,18 @@ void back_to_idle(NodeBench& node) {
 }
 
 constexpr Case fresh(std::string_view requirement, std::string_view rule, void (*run)(Bench&)) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kMove,
-          .start = kFresh};
+  return from(kFresh, Hazard::kMove, requirement, rule, run);
 }
 constexpr Case moving(std::string_view requirement, std::string_view rule, void (*run)(Bench&)) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kMove,
-          .start = kDisabled};
+  return from(kDisabled, Hazard::kMove, requirement, rule, run);
 }
 
 constexpr Case kCases[] = {
     moving("morap.voltage.close", "Up to 1.5 V.", on<voltage_close>),
     moving("morap.voltage.grid", "Up to 1.5 V, around a border too.", on<voltage_grid>),
     moving("morap.voltage.sign", "-1.5 V.", on<voltage_sign>),
-    {.requirement = "morap.voltage.uncalibrated",
-     .rule = "1.5 V.",
-     .run = on<voltage_uncalibrated>,
-     .hazard = Hazard::kMove,
-     .start = kUncalibrated},
+    from(kUncalibrated, Hazard::kMove, "morap.voltage.uncalibrated", "1.5 V.",
+         on<voltage_uncalibrated>),
     moving("morap.voltage.disabled", "1.5 V, then 0.", on<voltage_ended<kDisable>>),
     moving("morap.voltage.forgotten", "1.5 V, then 31.", on<voltage_ended<kCalibrationUnknown>>),
     fresh("morap.voltage.at-tick", "1.5 V between ticks.", on<voltage_at_tick>),
@@ -335,4 +315,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> output_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-#include "conformance/morap/sets.hpp"
-#include "harness/core/hex.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
-using enum CommandId;
 using enum ProgrammingStatus;
 
 // Messages without their identifier, from the reference's worked examples.
@@ -94,27 +84,14 @@ void none(NodeBench& node) {
 }
 
 void any_bits(NodeBench& node) {
-  ControllerSet set{ControllerKind::kSpeed, 400, filter({0.0F, -0.0F}), filter({0.0F, 0.0F}),
-                    filter({0.0F}),         0.0F};
-  set.c.values[0] = decode_float(slice<4>(Bytes{*from_hex("01 02 80 7F")}, 0));
-  set.c.values[1] = decode_float(slice<4>(Bytes{*from_hex("00 00 80 FF")}, 0));
-  node.send(set);
-  node.settle();
-  node.expect_same(node.read(kReadSpeedSet, 31), encode(set));
+  expect_kept(node, kReadSpeedSet,
+              "01 90 01 02 00 00 00 00 00 00 00 80 02 01 02 80 7F 00 00 80 FF 01 00 00 00 00 00 00 "
+              "00 00 64");
 }
 
-void too_many_d(NodeBench& node) {
-  node.send_bytes("20 00 C8 00 05");
-  node.expect_programming(kFailure);
-}
-void too_many_c(NodeBench& node) {
-  node.send_bytes("20 00 C8 00 00 05");
-  node.expect_programming(kFailure);
-}
-void too_many_f(NodeBench& node) {
-  node.send_bytes("20 00 C8 00 00 00 FF");
-  node.expect_programming(kFailure);
-}
+void too_many_d(NodeBench& node) { expect_outcome(node, "20 00 C8 00 05", kFailure); }
+void too_many_c(NodeBench& node) { expect_outcome(node, "20 00 C8 00 00 05", kFailure); }
+void too_many_f(NodeBench& node) { expect_outcome(node, "20 00 C8 00 00 00 FF", kFailure); }
 
 void too_many_rest(NodeBench& node) {
   // Behind the refused count all of a good message.
@@ -295,11 +272,7 @@ void defaults_at_tick(NodeBench& node) {
 
 constexpr Case programming(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
                            Start start = kProgrammable) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kProgram,
-          .start = start};
+  return from(start, Hazard::kProgram, requirement, rule, run);
 }
 
 constexpr Case kCases[] = {
@@ -355,4 +328,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> program_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <algorithm>
-#include <vector>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
-
-using enum CommandId;
 
 void first_mode(NodeBench& node) {
   node.turn(1000);
@@ -129,101 +121,50 @@ void position_default(NodeBench& node) {
 void speed_default(NodeBench& node) { node.expect_bytes(kReadSpeedSet, node.motor().speed_set); }
 
 constexpr Case kCases[] = {
-    {.requirement = "morap.read.first-mode",
-     .rule = "A turned shaft is read without a choice and with one.",
-     .run = on<first_mode>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "morap.read.angle-at-boot",
-     .rule = "It is read first.",
-     .run = on<zero_at_boot<kReadAngle>>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "morap.read.voltage-at-boot",
-     .rule = "It is read first.",
-     .run = on<zero_at_boot<kReadVoltage>>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "morap.read.position-at-boot",
-     .rule = "It is read first.",
-     .run = on<zero_at_boot<kReadPositionReference>>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "morap.read.speed-at-boot",
-     .rule = "It is read first.",
-     .run = on<zero_at_boot<kReadSpeedReference>>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
+    from(kFresh, Hazard::kState, "morap.read.first-mode",
+         "A turned shaft is read without a choice and with one.", on<first_mode>),
+    from(kFresh, Hazard::kState, "morap.read.angle-at-boot", "It is read first.",
+         on<zero_at_boot<kReadAngle>>),
+    from(kFresh, Hazard::kState, "morap.read.voltage-at-boot", "It is read first.",
+         on<zero_at_boot<kReadVoltage>>),
+    from(kFresh, Hazard::kState, "morap.read.position-at-boot", "It is read first.",
+         on<zero_at_boot<kReadPositionReference>>),
+    from(kFresh, Hazard::kState, "morap.read.speed-at-boot", "It is read first.",
+         on<zero_at_boot<kReadSpeedReference>>),
     {.requirement = "morap.read.address", .rule = "It is read.", .run = on<address>},
-    {.requirement = "morap.read.keeps-mode",
-     .rule = "One choice, four reads.",
-     .run = on<keeps_mode>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.read.mode-over-commands",
-     .rule = "The status is chosen, then commands of all sorts.",
-     .run = on<mode_over_commands>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.read.mode-over-brake",
-     .rule = "The status is chosen, then 14 and 15.",
-     .run = on<mode_over_brake>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.read.mode-over-unknown",
-     .rule = "The status is chosen, then identifiers without a meaning.",
-     .run = on<mode_over_unknown>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.read.surplus",
-     .rule = "The speed reference is chosen, with another choice behind it.",
-     .run = on<surplus>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.read.short",
-     .rule = "Two bytes, one byte, all four.",
-     .run = on<short_read>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
-    {.requirement = "morap.read.little-endian",
-     .rule = "A thousand counts, not calibrated.",
-     .run = on<little_endian>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "morap.read.snapshot",
-     .rule = "The shaft turns behind the first byte.",
-     .run = on<snapshot>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "morap.read.wrap",
-     .rule = "260 bytes, and the shaft turns between.",
-     .run = on<wrap>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "morap.read.byte-again",
-     .rule = "The status, four times in one read.",
-     .run = on<byte_again>,
-     .hazard = Hazard::kState,
-     .start = kUncalibrated},
+    from(kUncalibrated, Hazard::kState, "morap.read.keeps-mode", "One choice, four reads.",
+         on<keeps_mode>),
+    from(kUncalibrated, Hazard::kState, "morap.read.mode-over-commands",
+         "The status is chosen, then commands of all sorts.", on<mode_over_commands>),
+    from(kUncalibrated, Hazard::kState, "morap.read.mode-over-brake",
+         "The status is chosen, then 14 and 15.", on<mode_over_brake>),
+    from(kUncalibrated, Hazard::kState, "morap.read.mode-over-unknown",
+         "The status is chosen, then identifiers without a meaning.", on<mode_over_unknown>),
+    from(kUncalibrated, Hazard::kState, "morap.read.surplus",
+         "The speed reference is chosen, with another choice behind it.", on<surplus>),
+    from(kUncalibrated, Hazard::kState, "morap.read.short", "Two bytes, one byte, all four.",
+         on<short_read>),
+    from(kFresh, Hazard::kState, "morap.read.little-endian", "A thousand counts, not calibrated.",
+         on<little_endian>),
+    from(kFresh, Hazard::kState, "morap.read.snapshot", "The shaft turns behind the first byte.",
+         on<snapshot>),
+    from(kFresh, Hazard::kState, "morap.read.wrap", "260 bytes, and the shaft turns between.",
+         on<wrap>),
+    from(kUncalibrated, Hazard::kState, "morap.read.byte-again",
+         "The status, four times in one read.", on<byte_again>),
     {.requirement = "morap.read.set-filled", .rule = "64 bytes are read.", .run = on<set_filled>},
     {.requirement = "morap.read.set-wrap", .rule = "287 bytes are read.", .run = on<set_wrap>},
     {.requirement = "morap.read.set-checksum",
      .rule = "Both sets are read.",
      .run = on<set_checksum>},
-    {.requirement = "morap.read.position-default",
-     .rule = "It is loaded and read.",
-     .run = on<position_default>,
-     .hazard = Hazard::kProgram,
-     .start = kProgrammable},
-    {.requirement = "morap.read.speed-default",
-     .rule = "It is loaded and read.",
-     .run = on<speed_default>,
-     .hazard = Hazard::kProgram,
-     .start = kProgrammable},
+    from(kProgrammable, Hazard::kProgram, "morap.read.position-default", "It is loaded and read.",
+         on<position_default>),
+    from(kProgrammable, Hazard::kProgram, "morap.read.speed-default", "It is loaded and read.",
+         on<speed_default>),
 };
 
 }  // namespace
 
 std::span<const Case> reading_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

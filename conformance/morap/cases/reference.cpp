@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-#include <string>
+#include "conformance/morap/cases.hpp"
 
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-#include "emulators/morap/control.hpp"
-#include "harness/core/hex.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
-
-using enum CommandId;
 
 void position(NodeBench& node) {
   for (const auto* const bits : {"DB 0F C9 3F", "B8 1E 05 BF", "00 00 00 80", "01 00 00 00"}) {
@@ -185,11 +177,7 @@ void over_forgetting(NodeBench& node) {
 
 constexpr Case state(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
                      Start start) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kState,
-          .start = start};
+  return from(start, Hazard::kState, requirement, rule, run);
 }
 
 constexpr Case kCases[] = {
@@ -238,4 +226,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> reference_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

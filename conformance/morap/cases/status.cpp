@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <vector>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
-using enum CommandId;
 using enum MotorStatus;
 
 void at_boot(NodeBench& node) { node.expect_status(kNeedsCalibration); }
@@ -209,11 +203,8 @@ void power_forgets_parameters(NodeBench& node) {
 
 constexpr Case state(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
                      Start start) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = start == kProgrammable ? Hazard::kProgram : Hazard::kState,
-          .start = start};
+  return from(start, start == kProgrammable ? Hazard::kProgram : Hazard::kState, requirement, rule,
+              run);
 }
 
 constexpr Start kCalibrated = Start::kDisabled;
@@ -280,4 +271,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> status_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/morap/cases.hpp"
 
-#include <string_view>
-
-#include "conformance/morap/chapters.hpp"
-#include "conformance/morap/node_bench.hpp"
-#include "harness/core/hex.hpp"
-
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
-using enum CommandId;
 using enum ProgrammingStatus;
 using enum TuneKind;
-
-void expect_outcome(NodeBench& node, std::string_view message, ProgrammingStatus status) {
-  node.send_bytes(message);
-  node.expect_programming(status);
-}
 
 void success(NodeBench& node) { expect_outcome(node, "22 00 CD CC 4C 3E 00 00 10 C1", kSuccess); }
 
@@ -142,11 +130,7 @@ void no_inertia(NodeBench& node) {
 
 constexpr Case tuning(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
                       Start start = kProgrammable) {
-  return {.requirement = requirement,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kProgram,
-          .start = start};
+  return from(start, Hazard::kProgram, requirement, rule, run);
 }
 
 constexpr Case kCases[] = {
@@ -179,4 +163,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> tune_cases() noexcept { return kCases; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

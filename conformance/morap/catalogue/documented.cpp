@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/morap/chapters.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
 constexpr Requirement documented(std::string_view id, std::string_view text,
@@ -42,4 +42,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> documented_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/morap/chapters.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
 constexpr std::string_view kUnseen = "the pen answers nothing, and the suite has a node, not a pen";
@@ -36,4 +36,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> pen_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/morap/chapters.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
 constexpr Requirement kRequirements[] = {
@@ -69,4 +69,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> reference_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

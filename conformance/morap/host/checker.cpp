@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/morap/host/checker.hpp"
+#include "conformance/morap/host/check.hpp"
 
 #include <fmt/core.h>
 
@@ -14,7 +14,7 @@
 #include "harness/wire/morap/message.hpp"
 #include "harness/wire/morap/pen.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -235,14 +235,9 @@ class HostChecker final : public ProgramChecker {
     pen_ = now_;
   }
 
-  static double milliseconds(Duration time) {
-    return std::chrono::duration<double, std::milli>{time}.count();
-  }
-
   static constexpr std::string_view kPrefix = "morap.host.";
 
   Duration noise_;
-  Instant now_{};
   std::size_t messages_ = 0;
   std::map<std::uint8_t, Told> nodes_;  ///< by address
   std::optional<Instant> pen_{};        ///< when it was last told something
@@ -250,8 +245,8 @@ class HostChecker final : public ProgramChecker {
 
 }  // namespace
 
-std::unique_ptr<ProgramChecker> make_host_checker(const LinkNoise& noise) {
-  return std::make_unique<HostChecker>(noise);
+ProgramCheckEntry program_check() noexcept {
+  return {"morap", host_requirements, make_checker<HostChecker>};
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::programs

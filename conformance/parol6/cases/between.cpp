@@ -1,29 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cases that mutants asked for: each finds faults that no other one does.
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <algorithm>
-#include <cstdlib>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/homing_record.hpp"
-#include "conformance/parol6/motion.hpp"
-#include "harness/wire/parol6/readings.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr int kDemo = 69;
 constexpr Speeds kSomeSpeeds{111, -222, 333, -444, 555, -666};
-
-CommandFrame with_speeds(int code, const Speeds& speeds) {
-  auto frame = jog(speeds);
-  frame.command = Command{static_cast<std::uint8_t>(code)};
-  return frame;
-}
 
 void prompt(BoardBench& board) {
   constexpr int kFrames = 50;
@@ -38,12 +21,7 @@ void prompt(BoardBench& board) {
 }
 
 void all_whole(BoardBench& board) {
-  for (int i = 0; i < 20; ++i) {
-    board.send(encode(idle()));
-    const auto message = board.receive(board.answer_time());
-    if (!message) return board.fail_by_silence("a telemetry frame", "silence");
-    if (!message->fault.empty()) board.fail("60 bytes FF FF FF 38 ... 01 02", message->fault);
-  }
+  for (int i = 0; i < 20 && !board.is_over(); ++i) board.expect_whole();
 }
 
 void outputs_stay(BoardBench& board) {
@@ -213,88 +191,39 @@ constexpr Case kCases[] = {
      .variant = "always",
      .rule = "Twenty answers are all whole.",
      .run = on<all_whole>},
-    {.requirement = "parol6.telemetry.outputs",
-     .variant = "stay",
-     .rule = "Outputs stay on in a second frame that wants them.",
-     .run = on<outputs_stay>,
-     .hazard = Hazard::kState},
-    {.requirement = "parol6.io.outputs-moving",
-     .variant = "demo",
-     .rule = "OUT1 goes on in the demonstration.",
-     .run = on<outputs_in_demo>,
-     .hazard = Hazard::kMove,
-     .tier = Tier::kFull,
-     .start = kFresh},
-    {.requirement = "parol6.command.unknown",
-     .variant = "leaves-enabled",
-     .rule = "J5 jogs after code 42.",
-     .run = on<unknown_leaves_enabled>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disabled-keeps-speeds",
-     .rule = "Speeds that come with six codes while disabled do not show up.",
-     .run = on<disabled_keeps_speeds>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.home.once",
-     .variant = "at-all",
-     .rule = "A board homes within 90 s.",
-     .run = on<homes_at_all>,
-     .hazard = Hazard::kHome,
-     .tier = Tier::kFull,
-     .start = kEnabled},
-    {.requirement = "parol6.home.final-j5-j6",
-     .rule = "At the end J5 was at 8900 and J6 at 0.",
-     .run = on<final_j5_j6>,
-     .hazard = Hazard::kHome,
-     .start = kHomed},
-    {.requirement = "parol6.home.ended-by-clear",
-     .variant = "leaves-enabled",
-     .rule = "J5 jogs after clear error in homing.",
-     .run = on<clear_in_homing_leaves_enabled>,
-     .hazard = Hazard::kHome,
-     .start = kHomed},
-    {.requirement = "parol6.home.ended-by-go-to",
-     .variant = "goes",
-     .rule = "A go-to in homing arrives.",
-     .run = on<go_to_in_homing_goes>,
-     .hazard = Hazard::kHome,
-     .start = kHomed},
-    {.requirement = "parol6.demo.pauses-homing",
-     .rule = "J1 goes up with code 69 while it homes downward.",
-     .run = on<demo_in_homing>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.disabled-interrupted",
-     .rule = "Six codes in turn stop the demonstration of a disabled board.",
-     .run = on<demo_interrupted_while_disabled>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.gripper.speed-low-byte",
-     .variant = "full",
-     .rule = "The gripper is fast at speed byte 255.",
-     .run = on<gripper_at_full_speed>,
-     .hazard = Hazard::kGrip,
-     .tier = Tier::kFull,
-     .start = kEnabled},
-    {.requirement = "parol6.gripper.any-code",
-     .variant = "home",
-     .rule = "The gripper closes while home is held.",
-     .run = on<gripper_while_home_is_held>,
-     .hazard = Hazard::kHome,
-     .tier = Tier::kFull,
-     .start = kHomed},
-    {.requirement = "parol6.gripper.any-code",
-     .variant = "demo",
-     .rule = "The gripper closes in the demonstration.",
-     .run = on<gripper_in_demo>,
-     .hazard = Hazard::kMove,
-     .tier = Tier::kFull,
-     .start = kFresh},
+    from(kListening, Hazard::kState, "parol6.telemetry.outputs",
+         "Outputs stay on in a second frame that wants them.", on<outputs_stay>, "stay"),
+    full(from(kFresh, Hazard::kMove, "parol6.io.outputs-moving",
+              "OUT1 goes on in the demonstration.", on<outputs_in_demo>, "demo")),
+    from(kEnabled, Hazard::kMove, "parol6.command.unknown", "J5 jogs after code 42.",
+         on<unknown_leaves_enabled>, "leaves-enabled"),
+    from(kEnabled, Hazard::kMove, "parol6.command.disabled-keeps-speeds",
+         "Speeds that come with six codes while disabled do not show up.",
+         on<disabled_keeps_speeds>),
+    full(from(kEnabled, Hazard::kHome, "parol6.home.once", "A board homes within 90 s.",
+              on<homes_at_all>, "at-all")),
+    from(kHomed, Hazard::kHome, "parol6.home.final-j5-j6", "At the end J5 was at 8900 and J6 at 0.",
+         on<final_j5_j6>),
+    from(kHomed, Hazard::kHome, "parol6.home.ended-by-clear",
+         "J5 jogs after clear error in homing.", on<clear_in_homing_leaves_enabled>,
+         "leaves-enabled"),
+    from(kHomed, Hazard::kHome, "parol6.home.ended-by-go-to", "A go-to in homing arrives.",
+         on<go_to_in_homing_goes>, "goes"),
+    from(kFresh, Hazard::kMove, "parol6.demo.pauses-homing",
+         "J1 goes up with code 69 while it homes downward.", on<demo_in_homing>),
+    from(kFresh, Hazard::kMove, "parol6.demo.disabled-interrupted",
+         "Six codes in turn stop the demonstration of a disabled board.",
+         on<demo_interrupted_while_disabled>),
+    full(from(kEnabled, Hazard::kGrip, "parol6.gripper.speed-low-byte",
+              "The gripper is fast at speed byte 255.", on<gripper_at_full_speed>, "full")),
+    full(from(kHomed, Hazard::kHome, "parol6.gripper.any-code",
+              "The gripper closes while home is held.", on<gripper_while_home_is_held>, "home")),
+    full(from(kFresh, Hazard::kMove, "parol6.gripper.any-code",
+              "The gripper closes in the demonstration.", on<gripper_in_demo>, "demo")),
 };
 
 }  // namespace
 
 std::span<const Case> between_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <algorithm>
-#include <vector>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr std::size_t kJ5 = 4;
 constexpr int kSpeed = 500;
 constexpr Duration kWhile = 100ms;
 /// Half of what a supervisor waits before it stops an arm whose program is silent.
@@ -42,13 +32,16 @@ void still_at_start(BoardBench& board) {
   expect_still(board, {before, board.ask(with_code(0))});
 }
 
-void sticky(BoardBench& board) {
-  const auto before = run(board, a_jog(), 0ms).after;
+/// A jog that goes on for so long without another frame.
+void expect_goes_on(BoardBench& board, const CommandFrame& frame, std::string_view what) {
+  const auto before = run(board, frame, 0ms).after;
   board.pause(kSilence);
-  board.about("250 ms after the only frame of a jog");
-  expect_speed(board, {before, board.ask(a_jog())}, kJ5, kSpeed);
+  board.about(fmt::format("250 ms after {}", what));
+  expect_speed(board, {before, board.ask(frame)}, kJ5, kSpeed);
   board.act(idle());
 }
+
+void sticky(BoardBench& board) { expect_goes_on(board, a_jog(), "the only frame of a jog"); }
 
 CommandFrame with_timeout(CommandFrame frame, int milliseconds) {
   frame.timeout = static_cast<std::uint8_t>(milliseconds);
@@ -56,12 +49,7 @@ CommandFrame with_timeout(CommandFrame frame, int milliseconds) {
 }
 
 void timeout_ignored(BoardBench& board) {
-  const auto frame = with_timeout(a_jog(), 20);
-  const auto before = run(board, frame, 0ms).after;
-  board.pause(kSilence);
-  board.about("250 ms after a jog with a timeout of 20 ms");
-  expect_speed(board, {before, board.ask(frame)}, kJ5, kSpeed);
-  board.act(idle());
+  expect_goes_on(board, with_timeout(a_jog(), 20), "a jog with a timeout of 20 ms");
 }
 
 void timeout_stops(BoardBench& board) {
@@ -73,11 +61,7 @@ void timeout_stops(BoardBench& board) {
   board.expect_between(after, "position.j5", before.position[kJ5].value + 40,
                        before.position[kJ5].value + 60);
   board.act(idle());
-  const auto forever = run(board, with_timeout(a_jog(), 0), 0ms).after;
-  board.pause(kSilence);
-  board.about("250 ms after a jog without a timeout");
-  expect_speed(board, {forever, board.ask(a_jog())}, kJ5, kSpeed);
-  board.act(idle());
+  expect_goes_on(board, with_timeout(a_jog(), 0), "a jog without a timeout");
 }
 
 void timeout_reported(BoardBench& board) {
@@ -129,11 +113,16 @@ void expect_speed_kept(BoardBench& board, const CommandFrame& frame) {
 void disable_keeps_speed(BoardBench& board) { expect_speed_kept(board, with_code(102)); }
 void unknown_keeps_speed(BoardBench& board) { expect_speed_kept(board, with_code(42)); }
 
-void disabled_jog(BoardBench& board) {
-  board.act(with_code(102));
-  board.about("a jog while disabled");
+/// No jog moves the arm, until it is enabled.
+void expect_no_jog(BoardBench& board, std::string_view what) {
+  board.about(std::string{what});
   expect_still(board, a_jog(), kWhile);
   board.act(with_code(101));
+}
+
+void disabled_jog(BoardBench& board) {
+  board.act(with_code(102));
+  expect_no_jog(board, "a jog while disabled");
 }
 
 void disabled_jog_keeps_speed(BoardBench& board) {
@@ -170,8 +159,7 @@ void disabled_home_forgotten(BoardBench& board) {
 
 void disabled_idle_speed(BoardBench& board) {
   board.act(with_code(102));
-  auto frame = jog({7, -8, 9, -10, 11, -12});
-  frame.command = Command::kIdle;
+  const auto frame = with_speeds(255, {7, -8, 9, -10, 11, -12});
   board.act(frame);
   expect_reported(board, board.ask(with_code(102)), {7, -8, 9, -10, 11, -12});
   board.act(with_code(101));
@@ -180,9 +168,7 @@ void disabled_idle_speed(BoardBench& board) {
 void disabled_for_good(BoardBench& board) {
   board.act(with_code(102));
   for (const int code : {255, 0, 42, 103, 200, 255}) board.act(with_code(code));
-  board.about("a jog after disable and six other codes");
-  expect_still(board, a_jog(), kWhile);
-  board.act(with_code(101));
+  expect_no_jog(board, "a jog after disable and six other codes");
 }
 
 void enable(BoardBench& board) {
@@ -203,9 +189,7 @@ void enable_alone(BoardBench& board) {
 void clear_keeps_disabled(BoardBench& board) {
   board.act(with_code(102));
   board.act(with_code(103));
-  board.about("a jog after disable and clear error");
-  expect_still(board, a_jog(), kWhile);
-  board.act(with_code(101));
+  expect_no_jog(board, "a jog after disable and clear error");
 }
 
 void clear_keeps_enabled(BoardBench& board) {
@@ -216,11 +200,10 @@ void clear_keeps_enabled(BoardBench& board) {
 
 /// Speeds and positions that would be seen at once.
 CommandFrame tempting(const TelemetryFrame& rest, int code) {
-  auto frame = jog({900, 900, 900, 900, 900, 900});
+  auto frame = with_speeds(code, {900, 900, 900, 900, 900, 900});
   for (std::size_t j = 0; j < kJointCount; ++j) {
     frame.position[j] = Steps{rest.position[j].value + 100};
   }
-  frame.command = Command{static_cast<std::uint8_t>(code)};
   return frame;
 }
 
@@ -282,175 +265,77 @@ void each_of_burst(BoardBench& board) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "parol6.command.enabled-at-start",
-     .rule = "A board that was switched on jogs.",
-     .run = on<enabled_at_start>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.command.unhomed-at-start",
-     .rule = "A board that was switched on has no homed bit.",
-     .run = on<unhomed_at_start>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "parol6.command.zero-at-start",
-     .rule = "A board that was switched on reports zeros.",
-     .run = on<zero_at_start>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "parol6.command.still-at-start",
-     .rule = "A board that was switched on stands for a second.",
-     .run = on<still_at_start>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "parol6.command.sticky",
-     .rule = "One jog frame is enough for 250 ms.",
-     .run = on<sticky>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.timeout-ignored",
-     .rule = "A jog with a timeout of 20 ms goes on for 250 ms.",
-     .run = on<timeout_ignored>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.timeout-stops",
-     .rule = "A jog with a timeout of 100 ms makes the steps of 100 ms.",
-     .run = on<timeout_stops>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
+    from(kFresh, Hazard::kMove, "parol6.command.enabled-at-start",
+         "A board that was switched on jogs.", on<enabled_at_start>),
+    from(kFresh, Hazard::kState, "parol6.command.unhomed-at-start",
+         "A board that was switched on has no homed bit.", on<unhomed_at_start>),
+    from(kFresh, Hazard::kState, "parol6.command.zero-at-start",
+         "A board that was switched on reports zeros.", on<zero_at_start>),
+    from(kFresh, Hazard::kState, "parol6.command.still-at-start",
+         "A board that was switched on stands for a second.", on<still_at_start>),
+    from(kEnabled, Hazard::kMove, "parol6.command.sticky", "One jog frame is enough for 250 ms.",
+         on<sticky>),
+    from(kEnabled, Hazard::kMove, "parol6.command.timeout-ignored",
+         "A jog with a timeout of 20 ms goes on for 250 ms.", on<timeout_ignored>),
+    from(kEnabled, Hazard::kMove, "parol6.command.timeout-stops",
+         "A jog with a timeout of 100 ms makes the steps of 100 ms.", on<timeout_stops>),
     {.requirement = "parol6.command.timeout-reported",
      .rule = "A silence of 250 ms is an error after a timeout of 100 ms, once.",
      .run = on<timeout_reported>},
-    {.requirement = "parol6.command.affected-joints-ignored",
-     .rule = "J5 jogs with four values of affected_joints.",
-     .run = on<affected_joints_ignored>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disable-stops",
-     .rule = "A jog at 5000 steps/s ends with disable.",
-     .run = on<disable_stops>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disable-keeps-speed",
-     .rule = "The speed of a jog is still shown after disable.",
-     .run = on<disable_keeps_speed>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disabled-jog",
-     .rule = "No joint moves in a jog while disabled.",
-     .run = on<disabled_jog>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disabled-jog-keeps-speed",
-     .rule = "A jog while disabled does not show.",
-     .run = on<disabled_jog_keeps_speed>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disabled-go-to",
-     .rule = "No joint moves in a go-to while disabled.",
-     .run = on<disabled_go_to>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.command.disabled-home",
-     .rule = "Home does nothing while disabled.",
-     .run = on<disabled_home>,
-     .hazard = Hazard::kHome,
-     .start = kHomed},
-    {.requirement = "parol6.command.disabled-home-forgotten",
-     .rule = "Home while disabled has no effect after enable.",
-     .run = on<disabled_home_forgotten>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disabled-idle-speed",
-     .rule = "Idle speeds show while disabled.",
-     .run = on<disabled_idle_speed>,
-     .hazard = Hazard::kState,
-     .start = kEnabled},
-    {.requirement = "parol6.command.disabled-for-good",
-     .rule = "Six codes after disable do not enable.",
-     .run = on<disabled_for_good>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.enable",
-     .rule = "A board that was disabled jogs after enable.",
-     .run = on<enable>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.enable-alone",
-     .rule = "A jog that disable ended stays ended after enable.",
-     .run = on<enable_alone>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.enable-stops",
-     .rule = "A jog at 5000 steps/s ends with enable.",
-     .run = on<enable_stops>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.clear-keeps-disabled",
-     .rule = "No joint moves after disable and clear error.",
-     .run = on<clear_keeps_disabled>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.clear-keeps-enabled",
-     .rule = "A board jogs after clear error.",
-     .run = on<clear_keeps_enabled>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.clear-stops",
-     .rule = "A jog at 5000 steps/s ends with clear error.",
-     .run = on<clear_stops>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.idle-stops",
-     .rule = "A jog at 5000 steps/s ends with idle.",
-     .run = on<idle_stops>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.idle-still",
-     .rule = "Idle frames full of speeds and positions move nothing.",
-     .run = on<idle_still>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.unknown",
-     .rule = "A jog at 5000 steps/s ends with codes 0, 42 and 200.",
-     .run = on<unknown_stops>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.unknown-keeps-speed",
-     .rule = "The speed of a jog is still shown after code 42.",
-     .run = on<unknown_keeps_speed>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.unknown-still",
-     .rule = "248 codes with speeds and positions move nothing.",
-     .run = on<unknown_still>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.command.teleport",
-     .rule = "Code 200 with other positions changes none.",
-     .run = on<teleport>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.loop.last-of-burst",
-     .variant = "jog",
-     .rule = "A jog directly before another code never begins.",
-     .run = on<last_of_burst>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.loop.last-of-burst",
-     .variant = "home",
-     .rule = "A home directly before an idle frame never begins.",
-     .run = on<last_of_burst_home>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.loop.each-of-burst",
-     .rule = "A jog directly before another code sets its speed.",
-     .run = on<each_of_burst>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
+    from(kEnabled, Hazard::kMove, "parol6.command.affected-joints-ignored",
+         "J5 jogs with four values of affected_joints.", on<affected_joints_ignored>),
+    from(kEnabled, Hazard::kMove, "parol6.command.disable-stops",
+         "A jog at 5000 steps/s ends with disable.", on<disable_stops>),
+    from(kEnabled, Hazard::kMove, "parol6.command.disable-keeps-speed",
+         "The speed of a jog is still shown after disable.", on<disable_keeps_speed>),
+    from(kEnabled, Hazard::kMove, "parol6.command.disabled-jog",
+         "No joint moves in a jog while disabled.", on<disabled_jog>),
+    from(kEnabled, Hazard::kMove, "parol6.command.disabled-jog-keeps-speed",
+         "A jog while disabled does not show.", on<disabled_jog_keeps_speed>),
+    from(kHomed, Hazard::kMove, "parol6.command.disabled-go-to",
+         "No joint moves in a go-to while disabled.", on<disabled_go_to>),
+    from(kHomed, Hazard::kHome, "parol6.command.disabled-home", "Home does nothing while disabled.",
+         on<disabled_home>),
+    from(kEnabled, Hazard::kHome, "parol6.command.disabled-home-forgotten",
+         "Home while disabled has no effect after enable.", on<disabled_home_forgotten>),
+    from(kEnabled, Hazard::kState, "parol6.command.disabled-idle-speed",
+         "Idle speeds show while disabled.", on<disabled_idle_speed>),
+    from(kEnabled, Hazard::kMove, "parol6.command.disabled-for-good",
+         "Six codes after disable do not enable.", on<disabled_for_good>),
+    from(kEnabled, Hazard::kMove, "parol6.command.enable",
+         "A board that was disabled jogs after enable.", on<enable>),
+    from(kEnabled, Hazard::kMove, "parol6.command.enable-alone",
+         "A jog that disable ended stays ended after enable.", on<enable_alone>),
+    from(kEnabled, Hazard::kMove, "parol6.command.enable-stops",
+         "A jog at 5000 steps/s ends with enable.", on<enable_stops>),
+    from(kEnabled, Hazard::kMove, "parol6.command.clear-keeps-disabled",
+         "No joint moves after disable and clear error.", on<clear_keeps_disabled>),
+    from(kEnabled, Hazard::kMove, "parol6.command.clear-keeps-enabled",
+         "A board jogs after clear error.", on<clear_keeps_enabled>),
+    from(kEnabled, Hazard::kMove, "parol6.command.clear-stops",
+         "A jog at 5000 steps/s ends with clear error.", on<clear_stops>),
+    from(kEnabled, Hazard::kMove, "parol6.command.idle-stops",
+         "A jog at 5000 steps/s ends with idle.", on<idle_stops>),
+    from(kEnabled, Hazard::kMove, "parol6.command.idle-still",
+         "Idle frames full of speeds and positions move nothing.", on<idle_still>),
+    from(kEnabled, Hazard::kMove, "parol6.command.unknown",
+         "A jog at 5000 steps/s ends with codes 0, 42 and 200.", on<unknown_stops>),
+    from(kEnabled, Hazard::kMove, "parol6.command.unknown-keeps-speed",
+         "The speed of a jog is still shown after code 42.", on<unknown_keeps_speed>),
+    from(kEnabled, Hazard::kMove, "parol6.command.unknown-still",
+         "248 codes with speeds and positions move nothing.", on<unknown_still>),
+    from(kEnabled, Hazard::kMove, "parol6.command.teleport",
+         "Code 200 with other positions changes none.", on<teleport>),
+    from(kEnabled, Hazard::kMove, "parol6.loop.last-of-burst",
+         "A jog directly before another code never begins.", on<last_of_burst>, "jog"),
+    from(kEnabled, Hazard::kHome, "parol6.loop.last-of-burst",
+         "A home directly before an idle frame never begins.", on<last_of_burst_home>, "home"),
+    from(kEnabled, Hazard::kMove, "parol6.loop.each-of-burst",
+         "A jog directly before another code sets its speed.", on<each_of_burst>),
 };
 
 }  // namespace
 
 std::span<const Case> command_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

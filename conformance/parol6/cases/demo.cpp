@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The demonstration ignores the board's own disable, so no guard lets it pass: these cases run on
 // emulated boards only, each on one that was just switched on.
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr int kCode = 69;
 constexpr Speeds kOut{6179, -22'222, 49'812, 0, 4059, 46'075};
@@ -121,50 +115,24 @@ void lowers_maximum(BoardBench& board) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "parol6.demo",
-     .rule = "All joints go out and come back.",
-     .run = on<both_legs>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.unknown",
-     .rule = "No joint moves with code 69.",
-     .run = on<unknown>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.disabled",
-     .rule = "Joints move with code 69 after disable.",
-     .run = on<disabled>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.sleeps",
-     .rule = "One answer between the legs takes 2 s.",
-     .run = on<sleeps>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.ramp",
-     .rule = "J1 has the speeds of its ramp at 1000 and at 3050 steps.",
-     .run = on<ramp>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.once",
-     .rule = "The demonstration runs again only after an idle frame.",
-     .run = on<only_once>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.interrupted",
-     .rule = "The demonstration stands while code 42 is sent, and goes on.",
-     .run = on<interrupted>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
-    {.requirement = "parol6.demo.lowers-maximum",
-     .rule = "Six jogs are clamped to six lower speeds.",
-     .run = on<lowers_maximum>,
-     .hazard = Hazard::kMove,
-     .start = kFresh},
+    from(kFresh, Hazard::kMove, "parol6.demo", "All joints go out and come back.", on<both_legs>),
+    from(kFresh, Hazard::kMove, "parol6.demo.unknown", "No joint moves with code 69.", on<unknown>),
+    from(kFresh, Hazard::kMove, "parol6.demo.disabled", "Joints move with code 69 after disable.",
+         on<disabled>),
+    from(kFresh, Hazard::kMove, "parol6.demo.sleeps", "One answer between the legs takes 2 s.",
+         on<sleeps>),
+    from(kFresh, Hazard::kMove, "parol6.demo.ramp",
+         "J1 has the speeds of its ramp at 1000 and at 3050 steps.", on<ramp>),
+    from(kFresh, Hazard::kMove, "parol6.demo.once",
+         "The demonstration runs again only after an idle frame.", on<only_once>),
+    from(kFresh, Hazard::kMove, "parol6.demo.interrupted",
+         "The demonstration stands while code 42 is sent, and goes on.", on<interrupted>),
+    from(kFresh, Hazard::kMove, "parol6.demo.lowers-maximum",
+         "Six jogs are clamped to six lower speeds.", on<lowers_maximum>),
 };
 
 }  // namespace
 
 std::span<const Case> demo_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

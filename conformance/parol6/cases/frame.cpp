@@ -1,19 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <algorithm>
-#include <array>
-#include <utility>
-#include <vector>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "harness/core/hex.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 void one_answer(BoardBench& board) {
   for (int i = 0; i < 10; ++i) board.ask(idle());
@@ -33,8 +22,7 @@ void split_in_two(BoardBench& board) {
     board.about(fmt::format("a frame cut behind byte {}", split));
     board.send(std::span{frame}.first(split));
     board.pause(2ms);
-    board.send(std::span{frame}.subspan(split));
-    board.expect_answer();
+    board.expect_answer(std::span{frame}.subspan(split));
   }
 }
 
@@ -61,8 +49,7 @@ void noise(BoardBench& board) {
     const auto frame = encode(idle());
     bytes.insert(bytes.end(), frame.begin(), frame.end());
     board.about(fmt::format("a good frame behind {} bytes of noise", size));
-    board.send(bytes);
-    board.expect_answer();
+    board.expect_answer(bytes);
   }
 }
 
@@ -73,12 +60,10 @@ void wrong_end(BoardBench& board) {
     frame[kCommandFrameSize - 2] = static_cast<std::byte>(first);
     frame[kCommandFrameSize - 1] = static_cast<std::byte>(second);
     board.about(fmt::format("a frame that ends with {:02X} {:02X}", first, second));
-    board.send(frame);
-    board.expect_silence();
+    board.expect_silence(frame);
     board.about(
         fmt::format("the good frame behind one that ends with {:02X} {:02X}", first, second));
-    board.send(encode(idle()));
-    board.expect_answer();
+    board.expect_answer(encode(idle()));
   }
 }
 
@@ -135,11 +120,9 @@ void start_inside(BoardBench& board) {
 void two_starts(BoardBench& board) {
   const auto frame = encode(idle());
   board.about("a frame without its first byte");
-  board.send(std::span{frame}.subspan(1));
-  board.expect_silence();
+  board.expect_silence(std::span{frame}.subspan(1));
   board.about("the frame behind it");
-  board.send(frame);
-  board.expect_answer();
+  board.expect_answer(frame);
 }
 
 void interrupted_start(BoardBench& board) {
@@ -148,8 +131,7 @@ void interrupted_start(BoardBench& board) {
     const auto frame = encode(idle());
     bytes.insert(bytes.end(), frame.begin(), frame.end());
     board.about(fmt::format("a good frame behind {}", hex));
-    board.send(bytes);
-    board.expect_answer();
+    board.expect_answer(bytes);
   }
 }
 
@@ -157,11 +139,9 @@ void long_noise(BoardBench& board) {
   std::vector<std::byte> bytes(8192);
   std::ranges::generate(bytes, [&] { return static_cast<std::byte>(board.random() % 0xFF); });
   board.about("8192 bytes of noise without start bytes");
-  board.send(bytes);
-  board.expect_silence();
+  board.expect_silence(bytes);
   board.about("the frame behind 8192 bytes of noise");
-  board.send(encode(idle()));
-  board.expect_answer();
+  board.expect_answer(encode(idle()));
 }
 
 /// Any bytes, but no length of 0, and no frame that would be accepted.
@@ -197,26 +177,24 @@ void recovers(BoardBench& board) {
   }
 }
 
+CommandBytes with_check(BoardBench& board, int check) {
+  auto frame = idle();
+  frame.check = static_cast<std::uint8_t>(check);
+  board.about(fmt::format("a frame with check byte {:02X}", check));
+  return encode(frame);
+}
+
 void check_demanded(BoardBench& board) {
   for (const int check : {0x00, 0xD3, 0xE4, 0x2B}) {
-    auto frame = idle();
-    frame.check = static_cast<std::uint8_t>(check);
-    board.about(fmt::format("a frame with check byte {:02X}", check));
-    board.send(encode(frame));
-    board.expect_silence();
+    board.expect_silence(with_check(board, check));
     board.about("the good frame behind it");
-    board.send(encode(idle()));
-    board.expect_answer();
+    board.expect_answer(encode(idle()));
   }
 }
 
 void check_ignored(BoardBench& board) {
   for (const int check : {0x00, 0x01, 0xD4, 0xE4, 0xFF}) {
-    auto frame = idle();
-    frame.check = static_cast<std::uint8_t>(check);
-    board.about(fmt::format("a frame with check byte {:02X}", check));
-    board.send(encode(frame));
-    board.expect_answer();
+    board.expect_answer(with_check(board, check));
   }
 }
 
@@ -227,12 +205,8 @@ constexpr Case kCases[] = {
     {.requirement = "parol6.frame.no-chatter",
      .rule = "Half a second of silence stays so.",
      .run = on<no_chatter>},
-    {.requirement = "parol6.frame.no-chatter",
-     .variant = "power-up",
-     .rule = "A board that is switched on says nothing.",
-     .run = on<no_chatter>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
+    from(kFresh, Hazard::kState, "parol6.frame.no-chatter",
+         "A board that is switched on says nothing.", on<no_chatter>, "power-up"),
     {.requirement = "parol6.frame.split-anywhere",
      .variant = "two",
      .rule = "A frame in two pieces, cut at each byte in turn, is answered.",
@@ -294,4 +268,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> frame_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

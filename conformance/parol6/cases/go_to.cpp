@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <array>
-#include <cstdlib>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
-using namespace std::chrono_literals;
-
 using Targets = std::array<Steps, kJointCount>;
-
-constexpr std::size_t kJ4 = 3;
-constexpr std::size_t kJ5 = 4;
-constexpr std::size_t kJ6 = 5;
 
 /// Longer than the last steps of any go-to take.
 constexpr Duration kArrival = 500ms;
@@ -28,6 +15,17 @@ Answer expect_arrival(BoardBench& board, const Targets& targets) {
     board.expect(answer, position_field(j), targets[j].value);
   }
   return answer;
+}
+
+/// Back, at the end of a case.
+void expect_return(BoardBench& board, const Answer& rest) {
+  expect_arrival(board, rest.position);
+  board.act(idle());
+}
+
+void go_back(BoardBench& board, const Answer& rest) {
+  board.keep_asking(go_to(rest.position), kArrival);
+  board.act(idle());
 }
 
 void arrives(BoardBench& board) {
@@ -51,14 +49,16 @@ void own_joint(BoardBench& board) {
   board.act(idle());
 }
 
+Targets beside(const Answer& rest, const Speeds& ways) {
+  auto targets = rest.position;
+  for (std::size_t j = 0; j < kJointCount; ++j) targets[j].value += ways[j];
+  return targets;
+}
+
 void all_together(BoardBench& board) {
   const auto rest = board.ask(idle());
-  auto targets = rest.position;
-  constexpr Speeds kWays{60, 70, 80, -60, -70, -80};
-  for (std::size_t j = 0; j < kJointCount; ++j) targets[j].value += kWays[j];
-  expect_arrival(board, targets);
-  expect_arrival(board, rest.position);
-  board.act(idle());
+  expect_arrival(board, beside(rest, {60, 70, 80, -60, -70, -80}));
+  expect_return(board, rest);
 }
 
 void below_zero(BoardBench& board) {
@@ -68,8 +68,7 @@ void below_zero(BoardBench& board) {
   targets[kJ5] = Steps{-3};
   board.about("a go-to of j4 to -70 and j5 to -3");
   expect_arrival(board, targets);
-  expect_arrival(board, rest.position);
-  board.act(idle());
+  expect_return(board, rest);
 }
 
 void big_endian(BoardBench& board) {
@@ -107,11 +106,8 @@ void expect_law(BoardBench& board, const CommandFrame& frame, Duration time) {
 
 void expect_law(BoardBench& board, const Speeds& ways, const Speeds& speeds) {
   const auto rest = board.ask(idle());
-  auto targets = rest.position;
-  for (std::size_t j = 0; j < kJointCount; ++j) targets[j].value += ways[j];
-  expect_law(board, go_to(targets, speeds), 150ms);
-  board.keep_asking(go_to(rest.position), kArrival);
-  board.act(idle());
+  expect_law(board, go_to(beside(rest, ways), speeds), 150ms);
+  go_back(board, rest);
 }
 
 void the_law(BoardBench& board) {
@@ -136,8 +132,7 @@ void balance(BoardBench& board) {
     board.about(fmt::format("a go-to at its target with a commanded speed of {}", kSpeeds[j]));
     board.expect(answer, position_field(j), rest.position[j].value + kSpeeds[j] / 100);
   }
-  board.keep_asking(go_to(rest.position), kArrival);
-  board.act(idle());
+  go_back(board, rest);
 }
 
 void feed(BoardBench& board) {
@@ -147,8 +142,7 @@ void feed(BoardBench& board) {
   board.about("a go-to of 100 steps with a commanded speed of 3000");
   const auto answer = board.keep_asking(frame, kArrival);
   board.expect(answer, "position.j6", rest.position[kJ6].value + 130);
-  board.keep_asking(go_to(rest.position), kArrival);
-  board.act(idle());
+  go_back(board, rest);
 }
 
 void new_target(BoardBench& board) {
@@ -156,8 +150,7 @@ void new_target(BoardBench& board) {
   board.keep_asking(go_to(beside(rest, kJ5, 100)), 20ms);
   board.about("a go-to whose target has changed on the way");
   expect_arrival(board, beside(rest, kJ5, -60));
-  expect_arrival(board, rest.position);
-  board.act(idle());
+  expect_return(board, rest);
 }
 
 void no_overshoot(BoardBench& board) {
@@ -172,8 +165,7 @@ void no_overshoot(BoardBench& board) {
     last = answer.position[kJ5].value;
     board.pause(3ms);
   }
-  board.keep_asking(go_to(rest.position), kArrival);
-  board.act(idle());
+  go_back(board, rest);
 }
 
 void last_steps(BoardBench& board) {
@@ -191,8 +183,7 @@ void last_steps(BoardBench& board) {
     board.expect(answer, "position.j5", rest.position[kJ5].value + 1);
     board.expect(answer, "speed.j5", 50);
   }
-  board.keep_asking(go_to(rest.position), kArrival);
-  board.act(idle());
+  go_back(board, rest);
 }
 
 void sticky(BoardBench& board) {
@@ -251,100 +242,45 @@ void unlimited(BoardBench& board) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "parol6.goto.arrives",
-     .rule = "Four ways of 90 steps and of one step end where they should.",
-     .run = on<arrives>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.own-joint",
-     .rule = "Six targets move six joints.",
-     .run = on<own_joint>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.all-together",
-     .rule = "Six joints arrive at six targets of one frame.",
-     .run = on<all_together>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.signed",
-     .rule = "J4 and J5 can be sent below 0.",
-     .run = on<below_zero>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.big-endian",
-     .rule = "Targets whose bytes differ are reached.",
-     .run = on<big_endian>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.law",
-     .rule = "Reported speeds fit reported positions at every answer.",
-     .run = on<the_law>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.halved-toward-zero",
-     .rule = "Commanded speeds of 1 and -1 move nothing at the target.",
-     .run = on<toward_zero>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.balance",
-     .rule = "Six joints rest beside their targets, as their speeds say.",
-     .run = on<balance>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.feed",
-     .rule = "J6 follows the law with a commanded speed of 3000.",
-     .run = on<feed>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.new-target",
-     .rule = "J5 turns to another target.",
-     .run = on<new_target>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.no-overshoot",
-     .rule = "J5 comes nearer from answer to answer, and not beyond.",
-     .run = on<no_overshoot>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.last-steps",
-     .rule = "The second of two single steps does not come within 15 ms.",
-     .run = on<last_steps>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.sticky",
-     .rule = "One frame brings J5 to its target.",
-     .run = on<sticky>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.stops",
-     .rule = "Idle stops a go-to on its way.",
-     .run = on<stops>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.keeps-homed",
-     .rule = "A homed arm is still homed after a go-to.",
-     .run = on<keeps_homed>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.clamp",
-     .rule = "Each joint runs at 50,000 toward a far target, both ways.",
-     .run = on<clamp>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.clamp-of-table",
-     .rule = "Each joint runs at its own maximum toward a far target, both ways.",
-     .run = on<clamp_of_table>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.goto.unlimited",
-     .rule = "J5 arrives at 6900 steps.",
-     .run = on<unlimited>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
+    from(kHomed, Hazard::kMove, "parol6.goto.arrives",
+         "Four ways of 90 steps and of one step end where they should.", on<arrives>),
+    from(kHomed, Hazard::kMove, "parol6.goto.own-joint", "Six targets move six joints.",
+         on<own_joint>),
+    from(kHomed, Hazard::kMove, "parol6.goto.all-together",
+         "Six joints arrive at six targets of one frame.", on<all_together>),
+    from(kHomed, Hazard::kMove, "parol6.goto.signed", "J4 and J5 can be sent below 0.",
+         on<below_zero>),
+    from(kHomed, Hazard::kMove, "parol6.goto.big-endian", "Targets whose bytes differ are reached.",
+         on<big_endian>),
+    from(kHomed, Hazard::kMove, "parol6.goto.law",
+         "Reported speeds fit reported positions at every answer.", on<the_law>),
+    from(kHomed, Hazard::kMove, "parol6.goto.halved-toward-zero",
+         "Commanded speeds of 1 and -1 move nothing at the target.", on<toward_zero>),
+    from(kHomed, Hazard::kMove, "parol6.goto.balance",
+         "Six joints rest beside their targets, as their speeds say.", on<balance>),
+    from(kHomed, Hazard::kMove, "parol6.goto.feed",
+         "J6 follows the law with a commanded speed of 3000.", on<feed>),
+    from(kHomed, Hazard::kMove, "parol6.goto.new-target", "J5 turns to another target.",
+         on<new_target>),
+    from(kHomed, Hazard::kMove, "parol6.goto.no-overshoot",
+         "J5 comes nearer from answer to answer, and not beyond.", on<no_overshoot>),
+    from(kHomed, Hazard::kMove, "parol6.goto.last-steps",
+         "The second of two single steps does not come within 15 ms.", on<last_steps>),
+    from(kHomed, Hazard::kMove, "parol6.goto.sticky", "One frame brings J5 to its target.",
+         on<sticky>),
+    from(kHomed, Hazard::kMove, "parol6.goto.stops", "Idle stops a go-to on its way.", on<stops>),
+    from(kHomed, Hazard::kMove, "parol6.goto.keeps-homed",
+         "A homed arm is still homed after a go-to.", on<keeps_homed>),
+    from(kHomed, Hazard::kMove, "parol6.goto.clamp",
+         "Each joint runs at 50,000 toward a far target, both ways.", on<clamp>),
+    from(kHomed, Hazard::kMove, "parol6.goto.clamp-of-table",
+         "Each joint runs at its own maximum toward a far target, both ways.", on<clamp_of_table>),
+    from(kHomed, Hazard::kMove, "parol6.goto.unlimited", "J5 arrives at 6900 steps.",
+         on<unlimited>),
 };
 
 }  // namespace
 
 std::span<const Case> go_to_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

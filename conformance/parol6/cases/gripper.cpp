@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <cmath>
-#include <cstdlib>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr auto kGo = static_cast<std::uint8_t>(gripper_command::kActivate | gripper_command::kGoTo);
 /// The whole way takes 0.56 s at speed byte 60, 1.6 s at 20.
@@ -62,7 +53,7 @@ void prepare(BoardBench& board, int place) {
   board.keep_asking(with_gripper(to(place)), kWholeWay);
 }
 
-void expect_at(BoardBench& board, const TelemetryFrame& answer, int position) {
+void expect_at(BoardBench& board, const Answer& answer, int position) {
   board.expect_between(answer, "gripper.position", position - 1, position + 1);
 }
 
@@ -307,19 +298,21 @@ void object_held(BoardBench& board) {
   board.expect_bits(hold(board, 300), "gripper.status", 0x30, 0x20);
 }
 
+GripperSetPoint elsewhere(std::uint8_t id) {
+  auto set_point = to(160);
+  set_point.id = id;
+  return set_point;
+}
+
 void whose_answer(BoardBench& board) {
   prepare(board, 60);
-  auto elsewhere = to(160);
-  elsewhere.id = 16;
   board.about("a set-point for id 16");
-  expect_at(board, board.keep_asking(with_gripper(elsewhere), kWholeWay), 60);
+  expect_at(board, board.keep_asking(with_gripper(elsewhere(16)), kWholeWay), 60);
 }
 
 void id_low_bits(BoardBench& board) {
   prepare(board, 60);
-  auto elsewhere = to(160);
-  elsewhere.id = 16;
-  board.keep_asking(with_gripper(elsewhere), kWholeWay);
+  board.keep_asking(with_gripper(elsewhere(16)), kWholeWay);
   board.about("a set-point for id 16, then polls of id 0");
   board.act(idle());
   board.act(idle());
@@ -328,10 +321,8 @@ void id_low_bits(BoardBench& board) {
 
 void other_node(BoardBench& board) {
   prepare(board, 60);
-  auto elsewhere = to(160);
-  elsewhere.id = 3;
   board.about("a set-point for node 3");
-  expect_at(board, board.keep_asking(with_gripper(elsewhere), kWholeWay), 60);
+  expect_at(board, board.keep_asking(with_gripper(elsewhere(3)), kWholeWay), 60);
   board.act(idle());
   board.act(idle());
   expect_at(board, board.ask(idle()), 60);
@@ -419,13 +410,9 @@ void not_calibrated(BoardBench& board) {
 
 constexpr Case grip(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
                     Tier tier = Tier::kQuick, std::string_view variant = {}) {
-  return {.requirement = requirement,
-          .variant = variant,
-          .rule = rule,
-          .run = run,
-          .hazard = Hazard::kGrip,
-          .tier = tier,
-          .start = kEnabled};
+  auto one = from(kEnabled, Hazard::kGrip, requirement, rule, run, variant);
+  one.tier = tier;
+  return one;
 }
 
 constexpr Case with(Case one, Start start) {
@@ -512,4 +499,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> gripper_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-#include "harness/wire/parol6/readings.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr Duration kSomeSeeking = 200ms;
 constexpr Speeds kSeekSpeeds{-2050, -2550, -2550, 5550, -5050, -9550};
@@ -20,8 +13,7 @@ void expect_seeks(BoardBench& board, const CommandFrame& frame) {
 
 void idle_speeds_ignored(BoardBench& board) {
   begin_homing(board, 20ms);
-  auto frame = jog({5, 6, 7, 8, 9, 10});
-  frame.command = Command::kIdle;
+  const auto frame = with_speeds(255, {5, 6, 7, 8, 9, 10});
   board.about("homing, with speeds in idle frames");
   expect_seeks(board, frame);
   expect_reported(board, board.ask(frame), kSeekSpeeds);
@@ -107,15 +99,20 @@ void bits_stay(BoardBench& board) {
   }
 }
 
+/// Home, which begins with the seek speeds; then enable, which ends it.
+void expect_seek_speeds(BoardBench& board, std::string what) {
+  board.act(with_code(100));
+  board.about(std::move(what));
+  expect_reported(board, board.ask(idle()), kSeekSpeeds);
+  board.act(with_code(101));
+}
+
 /// A jog leaves a speed behind by which the next run can be told.
 void expect_begins_anew(BoardBench& board, int code) {
   begin_homing(board, kSomeSeeking);
   board.act(jog({-500, -500, -500, 0, 0, 0}));
   board.act(with_code(code));
-  board.act(with_code(100));
-  board.about(fmt::format("homing, a jog, code {}, home", code));
-  expect_reported(board, board.ask(idle()), kSeekSpeeds);
-  board.act(with_code(101));
+  expect_seek_speeds(board, fmt::format("homing, a jog, code {}, home", code));
 }
 
 void begins_anew(BoardBench& board) { expect_begins_anew(board, 101); }
@@ -137,10 +134,7 @@ void afresh(BoardBench& board) {
     begin_homing(board, kSomeSeeking);
     board.act(code == 123 ? jog({-500, -600, -700, 0, 0, 0}) : with_code(code));
     if (code == 102) board.act(with_code(101));
-    board.act(with_code(100));
-    board.about(fmt::format("homing, code {}, home", code));
-    expect_reported(board, board.ask(idle()), kSeekSpeeds);
-    board.act(with_code(101));
+    expect_seek_speeds(board, fmt::format("homing, code {}, home", code));
   }
 }
 
@@ -231,125 +225,54 @@ void held_once(BoardBench& board) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "parol6.home.idle-speeds-ignored",
-     .rule = "J2 seeks at its speed whatever idle frames say.",
-     .run = on<idle_speeds_ignored>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.goes-on-when-repeated",
-     .rule = "J2 seeks while the home command is repeated.",
-     .run = on<goes_on_when_repeated>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.paused",
-     .rule = "Code 42 pauses homing, idle resumes it.",
-     .run = on<paused>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.ended-by-enable",
-     .rule = "Idle does not resume homing after enable.",
-     .run = on<ended_by_enable>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.ended-by-disable",
-     .rule = "Idle does not resume homing after disable, nor after enable.",
-     .run = on<ended_by_disable>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.ended-by-clear",
-     .rule = "Idle does not resume homing after clear error.",
-     .run = on<ended_by_clear>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.ended-by-jog",
-     .rule = "Idle does not resume homing after a jog.",
-     .run = on<ended_by_jog>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.ended-by-go-to",
-     .rule = "Idle does not resume homing after a go-to.",
-     .run = on<ended_by_go_to>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.bits-taken-back",
-     .rule = "A homed arm that homes again is not homed.",
-     .run = on<bits_taken_back>,
-     .hazard = Hazard::kHome,
-     .tier = Tier::kFull,
-     .start = kHomed},
-    {.requirement = "parol6.home.bits-stay-away",
-     .rule = "No homed bit returns after homing was ended.",
-     .run = on<bits_stay_away>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.bits-stay",
-     .rule = "A homed arm stays homed through six codes.",
-     .run = on<bits_stay>,
-     .hazard = Hazard::kState,
-     .start = kHomed},
-    {.requirement = "parol6.home.begins-anew",
-     .rule = "Home after enable sets the seek speeds.",
-     .run = on<begins_anew>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.begins-anew-after-clear",
-     .rule = "Home after clear error sets the seek speeds.",
-     .run = on<begins_anew_after_clear>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.interrupted",
-     .rule = "Home after a jog seeks at the jog's speeds.",
-     .run = on<interrupted>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.afresh",
-     .rule = "Home after a jog, or after disable and enable, sets the seek speeds.",
-     .run = on<afresh>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.seen-stays",
-     .rule = "J1 does not seek its switch in the run behind an ended one.",
-     .run = on<seen_stays>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.seen-forgotten",
-     .rule = "J1 seeks its switch in the run behind an ended one.",
-     .run = on<seen_forgotten>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.pressed-at-start",
-     .rule = "J1 does not move with its switch stuck closed.",
-     .run = on<pressed_at_start>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.home.no-timeout",
-     .rule = "J1 still seeks after a minute.",
-     .run = on<no_timeout>,
-     .hazard = Hazard::kHome,
-     .tier = Tier::kFull,
-     .start = kEnabled},
-    {.requirement = "parol6.home.again",
-     .rule = "A homed arm homes a second time.",
-     .run = on<again>,
-     .hazard = Hazard::kHome,
-     .tier = Tier::kFull,
-     .start = kHomed},
-    {.requirement = "parol6.home.held",
-     .rule = "All joints are unhomed again 100 ms after the end of homing.",
-     .run = on<held>,
-     .hazard = Hazard::kHome,
-     .tier = Tier::kFull,
-     .start = kHomed},
-    {.requirement = "parol6.home.held-once",
-     .rule = "All joints stay homed and stand after the end of homing.",
-     .run = on<held_once>,
-     .hazard = Hazard::kHome,
-     .tier = Tier::kFull,
-     .start = kHomed},
+    from(kEnabled, Hazard::kHome, "parol6.home.idle-speeds-ignored",
+         "J2 seeks at its speed whatever idle frames say.", on<idle_speeds_ignored>),
+    from(kEnabled, Hazard::kHome, "parol6.home.goes-on-when-repeated",
+         "J2 seeks while the home command is repeated.", on<goes_on_when_repeated>),
+    from(kEnabled, Hazard::kHome, "parol6.home.paused", "Code 42 pauses homing, idle resumes it.",
+         on<paused>),
+    from(kEnabled, Hazard::kHome, "parol6.home.ended-by-enable",
+         "Idle does not resume homing after enable.", on<ended_by_enable>),
+    from(kEnabled, Hazard::kHome, "parol6.home.ended-by-disable",
+         "Idle does not resume homing after disable, nor after enable.", on<ended_by_disable>),
+    from(kEnabled, Hazard::kHome, "parol6.home.ended-by-clear",
+         "Idle does not resume homing after clear error.", on<ended_by_clear>),
+    from(kEnabled, Hazard::kHome, "parol6.home.ended-by-jog",
+         "Idle does not resume homing after a jog.", on<ended_by_jog>),
+    from(kEnabled, Hazard::kHome, "parol6.home.ended-by-go-to",
+         "Idle does not resume homing after a go-to.", on<ended_by_go_to>),
+    full(from(kHomed, Hazard::kHome, "parol6.home.bits-taken-back",
+              "A homed arm that homes again is not homed.", on<bits_taken_back>)),
+    from(kEnabled, Hazard::kHome, "parol6.home.bits-stay-away",
+         "No homed bit returns after homing was ended.", on<bits_stay_away>),
+    from(kHomed, Hazard::kState, "parol6.home.bits-stay",
+         "A homed arm stays homed through six codes.", on<bits_stay>),
+    from(kEnabled, Hazard::kHome, "parol6.home.begins-anew",
+         "Home after enable sets the seek speeds.", on<begins_anew>),
+    from(kEnabled, Hazard::kHome, "parol6.home.begins-anew-after-clear",
+         "Home after clear error sets the seek speeds.", on<begins_anew_after_clear>),
+    from(kEnabled, Hazard::kHome, "parol6.home.interrupted",
+         "Home after a jog seeks at the jog's speeds.", on<interrupted>),
+    from(kEnabled, Hazard::kHome, "parol6.home.afresh",
+         "Home after a jog, or after disable and enable, sets the seek speeds.", on<afresh>),
+    from(kEnabled, Hazard::kHome, "parol6.home.seen-stays",
+         "J1 does not seek its switch in the run behind an ended one.", on<seen_stays>),
+    from(kEnabled, Hazard::kHome, "parol6.home.seen-forgotten",
+         "J1 seeks its switch in the run behind an ended one.", on<seen_forgotten>),
+    from(kEnabled, Hazard::kHome, "parol6.home.pressed-at-start",
+         "J1 does not move with its switch stuck closed.", on<pressed_at_start>),
+    full(from(kEnabled, Hazard::kHome, "parol6.home.no-timeout", "J1 still seeks after a minute.",
+              on<no_timeout>)),
+    full(from(kHomed, Hazard::kHome, "parol6.home.again", "A homed arm homes a second time.",
+              on<again>)),
+    full(from(kHomed, Hazard::kHome, "parol6.home.held",
+              "All joints are unhomed again 100 ms after the end of homing.", on<held>)),
+    full(from(kHomed, Hazard::kHome, "parol6.home.held-once",
+              "All joints stay homed and stand after the end of homing.", on<held_once>)),
 };
 
 }  // namespace
 
 std::span<const Case> home_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

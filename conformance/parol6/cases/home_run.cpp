@@ -1,27 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cases about the run of homing that brought the arm to its start state; none moves it again.
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <string>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/homing_record.hpp"
-#include "conformance/parol6/motion.hpp"
-#include "harness/core/hex.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-constexpr std::size_t kJ1 = 0;
-constexpr std::size_t kJ2 = 1;
-constexpr std::size_t kJ3 = 2;
-constexpr std::size_t kJ4 = 3;
-constexpr std::size_t kJ5 = 4;
-constexpr std::size_t kJ6 = 5;
 
 HomingRecord record(BoardBench& board) { return HomingRecord{board.homing_log()}; }
 
@@ -296,118 +278,61 @@ void counters(BoardBench& board) {
 void rests(BoardBench& board) { expect_reported(board, record(board).last(), {}); }
 
 constexpr Case kCases[] = {
-    {.requirement = "parol6.home.once",
-     .rule = "One home command was enough.",
-     .run = on<once>,
-     .start = kHomed},
-    {.requirement = "parol6.home.order",
-     .rule = "No joint moved before its block's turn.",
-     .run = on<order>,
-     .start = kHomed},
-    {.requirement = "parol6.home.bits",
-     .rule = "homed took four values, in order.",
-     .run = on<bits>,
-     .start = kHomed},
-    {.requirement = "parol6.home.seek-speeds",
-     .rule = "The first answer of the run had six seek speeds.",
-     .run = on<seek_speeds>,
-     .start = kHomed},
-    {.requirement = "parol6.home.seek-motion",
-     .rule = "J1 to J3 went down as fast as they said.",
-     .run = on<seek_motion>,
-     .start = kHomed},
-    {.requirement = "parol6.home.waits-for-turn",
-     .rule = "J4 to J6 stood still at first, J5 and J6 for longer.",
-     .run = on<waits_for_turn>,
-     .start = kHomed},
-    {.requirement = "parol6.home.zero-at-switch",
-     .rule = "Joints that waited for others stood at 0.",
-     .run = on<zero_at_switch>,
-     .start = kHomed},
-    {.requirement = "parol6.home.back-off",
-     .rule = "J1 to J3 backed off as far as they should.",
-     .run = on<back_off>,
-     .start = kHomed},
-    {.requirement = "parol6.home.back-off-speeds",
-     .rule = "J1 showed -2050 while J2 and J3 showed 2050.",
-     .run = on<back_off_speeds>,
-     .start = kHomed},
-    {.requirement = "parol6.home.slow-speeds",
-     .rule = "J1 to J3 sought a second time at -750.",
-     .run = on<slow_speeds>,
-     .start = kHomed},
-    {.requirement = "parol6.home.final-j1-j3",
-     .rule = "J1 to J3 stood at their final positions.",
-     .run = on<final_j1_j3>,
-     .start = kHomed},
-    {.requirement = "parol6.home.ramp-j1-j3",
-     .rule = "J1 to J3 accelerated as they should.",
-     .run = on<ramp_j1_j3>,
-     .start = kHomed},
-    {.requirement = "parol6.home.speeds-j4",
-     .rule = "J4 had its three speeds.",
-     .run = on<speeds_j4>,
-     .start = kHomed},
-    {.requirement = "parol6.home.back-off-j4",
-     .rule = "J4 backed off to -1550.",
-     .run = on<back_off_j4>,
-     .start = kHomed},
-    {.requirement = "parol6.home.final-j4",
-     .rule = "J4 stood at -10200.",
-     .run = on<final_j4>,
-     .start = kHomed},
-    {.requirement = "parol6.home.ramp-j4",
-     .rule = "J4 accelerated as it should.",
-     .run = on<ramp_j4>,
-     .start = kHomed},
-    {.requirement = "parol6.home.speeds-j6",
-     .rule = "J6 had its three speeds.",
-     .run = on<speeds_j6>,
-     .start = kHomed},
-    {.requirement = "parol6.home.back-off-j6",
-     .rule = "J6 backed off to 1550.",
-     .run = on<back_off_j6>,
-     .start = kHomed},
-    {.requirement = "parol6.home.parks-j6",
-     .rule = "J6 stood at 15900, not homed, while J5 sought.",
-     .run = on<parks_j6>,
-     .start = kHomed},
-    {.requirement = "parol6.home.ramp-j6",
-     .rule = "J6 accelerated as it should.",
-     .run = on<ramp_j6>,
-     .start = kHomed},
-    {.requirement = "parol6.home.speeds-j5",
-     .rule = "J5 had its three speeds.",
-     .run = on<speeds_j5>,
-     .start = kHomed},
-    {.requirement = "parol6.home.back-off-j5",
-     .rule = "J5 backed off to 1550.",
-     .run = on<back_off_j5>,
-     .start = kHomed},
-    {.requirement = "parol6.home.ramp-j5",
-     .rule = "J5 and the returning J6 accelerated as they should.",
-     .run = on<ramp_j5>,
-     .start = kHomed},
-    {.requirement = "parol6.home.returns-j6",
-     .rule = "J6 came back while J5 went to its place.",
-     .run = on<returns_j6>,
-     .start = kHomed},
-    {.requirement = "parol6.home.last-bits",
-     .rule = "The last two homed bits came together.",
-     .run = on<last_bits>,
-     .start = kHomed},
-    {.requirement = "parol6.home.counters",
-     .rule = "The counters jumped to the standby position.",
-     .run = on<counters>,
-     .start = kHomed},
-    {.requirement = "parol6.home.rests",
-     .rule = "All speeds were 0 at the end.",
-     .run = on<rests>,
-     .start = kHomed},
+    from(kHomed, Hazard::kObserve, "parol6.home.once", "One home command was enough.", on<once>),
+    from(kHomed, Hazard::kObserve, "parol6.home.order", "No joint moved before its block's turn.",
+         on<order>),
+    from(kHomed, Hazard::kObserve, "parol6.home.bits", "homed took four values, in order.",
+         on<bits>),
+    from(kHomed, Hazard::kObserve, "parol6.home.seek-speeds",
+         "The first answer of the run had six seek speeds.", on<seek_speeds>),
+    from(kHomed, Hazard::kObserve, "parol6.home.seek-motion",
+         "J1 to J3 went down as fast as they said.", on<seek_motion>),
+    from(kHomed, Hazard::kObserve, "parol6.home.waits-for-turn",
+         "J4 to J6 stood still at first, J5 and J6 for longer.", on<waits_for_turn>),
+    from(kHomed, Hazard::kObserve, "parol6.home.zero-at-switch",
+         "Joints that waited for others stood at 0.", on<zero_at_switch>),
+    from(kHomed, Hazard::kObserve, "parol6.home.back-off",
+         "J1 to J3 backed off as far as they should.", on<back_off>),
+    from(kHomed, Hazard::kObserve, "parol6.home.back-off-speeds",
+         "J1 showed -2050 while J2 and J3 showed 2050.", on<back_off_speeds>),
+    from(kHomed, Hazard::kObserve, "parol6.home.slow-speeds",
+         "J1 to J3 sought a second time at -750.", on<slow_speeds>),
+    from(kHomed, Hazard::kObserve, "parol6.home.final-j1-j3",
+         "J1 to J3 stood at their final positions.", on<final_j1_j3>),
+    from(kHomed, Hazard::kObserve, "parol6.home.ramp-j1-j3", "J1 to J3 accelerated as they should.",
+         on<ramp_j1_j3>),
+    from(kHomed, Hazard::kObserve, "parol6.home.speeds-j4", "J4 had its three speeds.",
+         on<speeds_j4>),
+    from(kHomed, Hazard::kObserve, "parol6.home.back-off-j4", "J4 backed off to -1550.",
+         on<back_off_j4>),
+    from(kHomed, Hazard::kObserve, "parol6.home.final-j4", "J4 stood at -10200.", on<final_j4>),
+    from(kHomed, Hazard::kObserve, "parol6.home.ramp-j4", "J4 accelerated as it should.",
+         on<ramp_j4>),
+    from(kHomed, Hazard::kObserve, "parol6.home.speeds-j6", "J6 had its three speeds.",
+         on<speeds_j6>),
+    from(kHomed, Hazard::kObserve, "parol6.home.back-off-j6", "J6 backed off to 1550.",
+         on<back_off_j6>),
+    from(kHomed, Hazard::kObserve, "parol6.home.parks-j6",
+         "J6 stood at 15900, not homed, while J5 sought.", on<parks_j6>),
+    from(kHomed, Hazard::kObserve, "parol6.home.ramp-j6", "J6 accelerated as it should.",
+         on<ramp_j6>),
+    from(kHomed, Hazard::kObserve, "parol6.home.speeds-j5", "J5 had its three speeds.",
+         on<speeds_j5>),
+    from(kHomed, Hazard::kObserve, "parol6.home.back-off-j5", "J5 backed off to 1550.",
+         on<back_off_j5>),
+    from(kHomed, Hazard::kObserve, "parol6.home.ramp-j5",
+         "J5 and the returning J6 accelerated as they should.", on<ramp_j5>),
+    from(kHomed, Hazard::kObserve, "parol6.home.returns-j6",
+         "J6 came back while J5 went to its place.", on<returns_j6>),
+    from(kHomed, Hazard::kObserve, "parol6.home.last-bits",
+         "The last two homed bits came together.", on<last_bits>),
+    from(kHomed, Hazard::kObserve, "parol6.home.counters",
+         "The counters jumped to the standby position.", on<counters>),
+    from(kHomed, Hazard::kObserve, "parol6.home.rests", "All speeds were 0 at the end.", on<rests>),
 };
 
 }  // namespace
 
 std::span<const Case> home_run_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr std::uint8_t kBoth = io_flag::kOut1 | io_flag::kOut2;
 constexpr std::uint8_t kOutputs[] = {io_flag::kOut1, io_flag::kOut2, kBoth, 0};
@@ -133,6 +127,15 @@ void inputs_always(BoardBench& board) {
 void press(BoardBench& board) { board.touch("estop", 0); }
 void release(BoardBench& board) { board.touch("estop", 1); }
 
+void expect_jog(BoardBench& board, std::string_view what) {
+  board.about(std::string{what});
+  expect_speed(board, run(board, jog(4, 500), 100ms), 4, 500);
+}
+void expect_no_jog(BoardBench& board, std::string_view what) {
+  board.about(std::string{what});
+  expect_still(board, jog(4, 500), 100ms);
+}
+
 void estop_reported(BoardBench& board) {
   board.spoil();
   board.act(jog(4, 500));
@@ -142,8 +145,7 @@ void estop_reported(BoardBench& board) {
   board.expect_bits(stretch.after, "io", io_flag::kEstopReleased, 0);
   expect_speed(board, stretch, 4, 500);
   release(board);
-  board.about("the same jog when it is released");
-  expect_speed(board, run(board, jog(4, 500), 100ms), 4, 500);
+  expect_jog(board, "the same jog when it is released");
 }
 
 void estop_disables(BoardBench& board) {
@@ -151,8 +153,7 @@ void estop_disables(BoardBench& board) {
   board.act(jog(4, 500));
   press(board);
   board.pause(BoardBench::kPassTime);
-  board.about("a jog with the emergency stop pressed");
-  expect_still(board, jog(4, 500), 100ms);
+  expect_no_jog(board, "a jog with the emergency stop pressed");
   release(board);
 }
 
@@ -161,11 +162,9 @@ void estop_released(BoardBench& board) {
   press(board);
   board.act(idle());
   release(board);
-  board.about("a jog after the emergency stop was released");
-  expect_still(board, jog(4, 500), 100ms);
+  expect_no_jog(board, "a jog after the emergency stop was released");
   board.act(with_code(101));
-  board.about("a jog after enable");
-  expect_speed(board, run(board, jog(4, 500), 100ms), 4, 500);
+  expect_jog(board, "a jog after enable");
 }
 
 void estop_ignored_by_enable(BoardBench& board) {
@@ -173,8 +172,7 @@ void estop_ignored_by_enable(BoardBench& board) {
   board.act(with_code(102));
   press(board);
   board.act(with_code(101));
-  board.about("a jog after enable, the emergency stop being pressed");
-  expect_speed(board, run(board, jog(4, 500), 100ms), 4, 500);
+  expect_jog(board, "a jog after enable, the emergency stop being pressed");
   release(board);
 }
 
@@ -182,8 +180,7 @@ void estop_holds(BoardBench& board) {
   board.spoil();
   press(board);
   board.act(with_code(101));
-  board.about("a jog after enable, the emergency stop being pressed");
-  expect_still(board, jog(4, 500), 100ms);
+  expect_no_jog(board, "a jog after enable, the emergency stop being pressed");
   release(board);
 }
 
@@ -209,93 +206,49 @@ void estop_ends_homing(BoardBench& board) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "parol6.telemetry.outputs",
-     .rule = "Outputs are shown by the frame that sets them.",
-     .run = on<outputs>,
-     .hazard = Hazard::kState},
-    {.requirement = "parol6.io.output-bits",
-     .rule = "Each output bit sets its own output alone.",
-     .run = on<output_bits>,
-     .hazard = Hazard::kState},
+    from(kListening, Hazard::kState, "parol6.telemetry.outputs",
+         "Outputs are shown by the frame that sets them.", on<outputs>),
+    from(kListening, Hazard::kState, "parol6.io.output-bits",
+         "Each output bit sets its own output alone.", on<output_bits>),
     {.requirement = "parol6.io.other-bits",
      .rule = "Six other bits of in_out change nothing in io.",
      .run = on<other_bits>},
-    {.requirement = "parol6.io.outputs-always",
-     .rule = "Outputs switch with every code, enabled and disabled.",
-     .run = on<outputs_always>,
-     .hazard = Hazard::kHome,
-     .start = kHomed},
-    {.requirement = "parol6.io.outputs-moving",
-     .variant = "jog",
-     .rule = "Outputs switch in a jog, which goes on.",
-     .run = on<outputs_of_jog>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.io.outputs-moving",
-     .variant = "go-to",
-     .rule = "Outputs switch in a go-to, which arrives.",
-     .run = on<outputs_of_go_to>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.io.outputs-moving",
-     .variant = "home",
-     .rule = "Outputs switch during homing, which goes on.",
-     .run = on<outputs_of_homing>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
+    from(kHomed, Hazard::kHome, "parol6.io.outputs-always",
+         "Outputs switch with every code, enabled and disabled.", on<outputs_always>),
+    from(kEnabled, Hazard::kMove, "parol6.io.outputs-moving",
+         "Outputs switch in a jog, which goes on.", on<outputs_of_jog>, "jog"),
+    from(kHomed, Hazard::kMove, "parol6.io.outputs-moving",
+         "Outputs switch in a go-to, which arrives.", on<outputs_of_go_to>, "go-to"),
+    from(kEnabled, Hazard::kHome, "parol6.io.outputs-moving",
+         "Outputs switch during homing, which goes on.", on<outputs_of_homing>, "home"),
     {.requirement = "parol6.io.sampled",
      .rule = "Six changes of IN1 and IN2 show in the very next answers.",
      .run = on<sampled>},
     {.requirement = "parol6.io.in1-bit", .rule = "IN1 shows in its bit.", .run = on<in1_bit>},
     {.requirement = "parol6.io.in2-bit", .rule = "IN2 shows in its bit.", .run = on<in2_bit>},
-    {.requirement = "parol6.io.estop-bit",
-     .rule = "The emergency stop shows in its bit.",
-     .run = on<estop_bit>,
-     .hazard = Hazard::kState},
-    {.requirement = "parol6.io.inputs-always",
-     .rule = "IN1 shows in answers to every code, enabled and disabled.",
-     .run = on<inputs_always>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.io.estop-reported",
-     .rule = "A jog goes on while the stop is pressed.",
-     .run = on<estop_reported>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.io.estop-disables",
-     .rule = "A jog ends when the stop is pressed.",
-     .run = on<estop_disables>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.io.estop-released-stays-disabled",
-     .rule = "After the stop is released only enable lets a joint jog.",
-     .run = on<estop_released>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.io.estop-ignored-by-enable",
-     .rule = "A disabled board can be enabled and jogs while the stop is pressed.",
-     .run = on<estop_ignored_by_enable>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.io.estop-holds",
-     .rule = "Enable has no effect while the stop is pressed.",
-     .run = on<estop_holds>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.io.estop-ignored-by-homing",
-     .rule = "Homing seeks while the stop is pressed.",
-     .run = on<estop_ignored_by_homing>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
-    {.requirement = "parol6.io.estop-ends-homing",
-     .rule = "Homing ends when the stop is pressed, for good.",
-     .run = on<estop_ends_homing>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
+    from(kListening, Hazard::kState, "parol6.io.estop-bit", "The emergency stop shows in its bit.",
+         on<estop_bit>),
+    from(kEnabled, Hazard::kHome, "parol6.io.inputs-always",
+         "IN1 shows in answers to every code, enabled and disabled.", on<inputs_always>),
+    from(kEnabled, Hazard::kMove, "parol6.io.estop-reported",
+         "A jog goes on while the stop is pressed.", on<estop_reported>),
+    from(kEnabled, Hazard::kMove, "parol6.io.estop-disables",
+         "A jog ends when the stop is pressed.", on<estop_disables>),
+    from(kEnabled, Hazard::kMove, "parol6.io.estop-released-stays-disabled",
+         "After the stop is released only enable lets a joint jog.", on<estop_released>),
+    from(kEnabled, Hazard::kMove, "parol6.io.estop-ignored-by-enable",
+         "A disabled board can be enabled and jogs while the stop is pressed.",
+         on<estop_ignored_by_enable>),
+    from(kEnabled, Hazard::kMove, "parol6.io.estop-holds",
+         "Enable has no effect while the stop is pressed.", on<estop_holds>),
+    from(kEnabled, Hazard::kHome, "parol6.io.estop-ignored-by-homing",
+         "Homing seeks while the stop is pressed.", on<estop_ignored_by_homing>),
+    from(kEnabled, Hazard::kHome, "parol6.io.estop-ends-homing",
+         "Homing ends when the stop is pressed, for good.", on<estop_ends_homing>),
 };
 
 }  // namespace
 
 std::span<const Case> io_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

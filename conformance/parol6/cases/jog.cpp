@@ -1,21 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <array>
-#include <optional>
-#include <utility>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
-
-constexpr std::size_t kJ5 = 4;
-constexpr std::size_t kJ6 = 5;
 
 /// Jogs a joint there and back, so that cases leave the arm where it was.
 void expect_jog(BoardBench& board, std::size_t joint, int speed, Duration time) {
@@ -207,111 +194,50 @@ void same_speed(BoardBench& board) {
 }
 
 constexpr Case kCases[] = {
-    {.requirement = "parol6.jog.own-joint",
-     .rule = "Six jogs move six joints.",
-     .run = on<own_joint>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.all-together",
-     .rule = "Six joints jog at six speeds in one frame.",
-     .run = on<all_together>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.forward",
-     .rule = "Each joint counts up at a positive speed.",
-     .run = on<forward>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.backward",
-     .rule = "Each joint counts down at a negative speed.",
-     .run = on<backward>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.speed",
-     .rule = "J1 makes the steps of four speeds.",
-     .run = on<speed>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.slow",
-     .rule = "J6 makes the steps of 3, 7 and 20 steps/s.",
-     .run = on<slow>,
-     .hazard = Hazard::kMove,
-     .tier = Tier::kFull,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.fast",
-     .rule = "Each joint makes the steps of its highest jog speed.",
-     .run = on<fast>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.no-ramp",
-     .rule = "J6 has made 30 steps 10 ms after rest.",
-     .run = on<no_ramp>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.first-step",
-     .rule = "A very slow jog makes its first step at once.",
-     .run = on<first_step>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.zero",
-     .rule = "A jog without speeds moves nothing.",
-     .run = on<zero>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.reported",
-     .rule = "Six speeds come back in a jog.",
-     .run = on<reported>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.change",
-     .rule = "A jog changes its speed three times.",
-     .run = on<change>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.reverse",
-     .rule = "A jog turns round six times.",
-     .run = on<reverse>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.ignores-positions",
-     .rule = "A jog with extreme positions is a jog.",
-     .run = on<ignores_positions>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.keeps-homed",
-     .rule = "A homed arm is still homed after a jog.",
-     .run = on<keeps_homed>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.jog.clamp",
-     .rule = "Each joint jogs at 50,000 when told 60,000, both ways.",
-     .run = on<clamp>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.clamp-of-table",
-     .rule = "Each joint jogs at its own maximum when told 30,000, both ways.",
-     .run = on<clamp_of_table>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.jog.unlimited",
-     .rule = "J5 goes beyond 6800 steps.",
-     .run = on<unlimited>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.step.no-catch-up",
-     .rule = "A jog that has paused goes on where it was.",
-     .run = on<no_catch_up>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.step.same-speed-keeps-direction",
-     .rule = "J1 goes on forward when a jog says -2050 while it backs off.",
-     .run = on<same_speed>,
-     .hazard = Hazard::kHome,
-     .start = kEnabled},
+    from(kEnabled, Hazard::kMove, "parol6.jog.own-joint", "Six jogs move six joints.",
+         on<own_joint>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.all-together",
+         "Six joints jog at six speeds in one frame.", on<all_together>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.forward", "Each joint counts up at a positive speed.",
+         on<forward>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.backward",
+         "Each joint counts down at a negative speed.", on<backward>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.speed", "J1 makes the steps of four speeds.",
+         on<speed>),
+    full(from(kEnabled, Hazard::kMove, "parol6.jog.slow",
+              "J6 makes the steps of 3, 7 and 20 steps/s.", on<slow>)),
+    from(kEnabled, Hazard::kMove, "parol6.jog.fast",
+         "Each joint makes the steps of its highest jog speed.", on<fast>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.no-ramp", "J6 has made 30 steps 10 ms after rest.",
+         on<no_ramp>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.first-step",
+         "A very slow jog makes its first step at once.", on<first_step>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.zero", "A jog without speeds moves nothing.",
+         on<zero>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.reported", "Six speeds come back in a jog.",
+         on<reported>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.change", "A jog changes its speed three times.",
+         on<change>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.reverse", "A jog turns round six times.",
+         on<reverse>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.ignores-positions",
+         "A jog with extreme positions is a jog.", on<ignores_positions>),
+    from(kHomed, Hazard::kMove, "parol6.jog.keeps-homed", "A homed arm is still homed after a jog.",
+         on<keeps_homed>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.clamp",
+         "Each joint jogs at 50,000 when told 60,000, both ways.", on<clamp>),
+    from(kEnabled, Hazard::kMove, "parol6.jog.clamp-of-table",
+         "Each joint jogs at its own maximum when told 30,000, both ways.", on<clamp_of_table>),
+    from(kHomed, Hazard::kMove, "parol6.jog.unlimited", "J5 goes beyond 6800 steps.",
+         on<unlimited>),
+    from(kEnabled, Hazard::kMove, "parol6.step.no-catch-up",
+         "A jog that has paused goes on where it was.", on<no_catch_up>),
+    from(kEnabled, Hazard::kHome, "parol6.step.same-speed-keeps-direction",
+         "J1 goes on forward when a jog says -2050 while it backs off.", on<same_speed>),
 };
 
 }  // namespace
 
 std::span<const Case> jog_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

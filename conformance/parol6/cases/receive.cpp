@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <algorithm>
-#include <vector>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// Lengths at which the end bytes fall into no field that does anything.
 constexpr int kOtherLengths[] = {3, 12, 21, 36, 40, 51, 53, 60, 255};
@@ -27,18 +18,11 @@ std::vector<std::byte> with_length(const CommandFrame& frame, int length) {
   return bytes;
 }
 
-CommandFrame idle_with(const Speeds& speeds) {
-  auto frame = jog(speeds);
-  frame.command = Command::kIdle;
-  return frame;
-}
-
 void any_length(BoardBench& board) {
   for (const auto length : kOtherLengths) {
     board.ask(idle());
     board.about(fmt::format("an idle frame of length {}", length));
-    board.send(with_length(idle(), length));
-    board.expect(board.expect_answer(), "echo", 255);
+    board.expect(board.expect_answer(with_length(idle(), length)), "echo", 255);
   }
   board.act(idle());
 }
@@ -46,8 +30,7 @@ void any_length(BoardBench& board) {
 void one_length(BoardBench& board) {
   for (const auto length : kOtherLengths) {
     board.about(fmt::format("an idle frame of length {}", length));
-    board.send(with_length(idle(), length));
-    board.expect_silence();
+    board.expect_silence(with_length(idle(), length));
     board.about(fmt::format("the frame behind one of length {}", length));
     board.ask(idle());
   }
@@ -56,17 +39,15 @@ void one_length(BoardBench& board) {
 void shortest(BoardBench& board) {
   board.act(with_code(42));
   board.about("FF FF FF 02 01 02 after code 42");
-  board.send(with_length(idle(), 2));
-  board.expect(board.expect_answer(), "echo", 42);
+  board.expect(board.expect_answer(with_length(idle(), 2)), "echo", 42);
   board.act(idle());
 }
 
 /// Length 24 brings the positions and the speeds of J1 and J2, the end bytes being part of J2's.
 Answer half_of_the_speeds(BoardBench& board) {
-  board.act(idle_with({11, 12, 13, 14, 15, 16}));
+  board.act(with_speeds(255, {11, 12, 13, 14, 15, 16}));
   board.about("idle with speeds 11 to 16, then length 24 with j1 = 99");
-  board.send(with_length(idle_with({99, 0, 0, 0, 0, 0}), 24));
-  board.expect_answer();
+  board.expect_answer(with_length(with_speeds(255, {99, 0, 0, 0, 0, 0}), 24));
   board.pause(BoardBench::kPassTime);
   return board.ask(with_code(42));
 }
@@ -87,13 +68,11 @@ void end_in_field(BoardBench& board) {
 
 void dropped_stays(BoardBench& board) {
   board.act(idle());
-  auto dropped = encode(idle_with({21, 22, 23, 24, 25, 26}));
+  auto dropped = encode(with_speeds(255, {21, 22, 23, 24, 25, 26}));
   dropped.back() = std::byte{3};
   board.about("a dropped idle frame with speeds 21 to 26, then FF FF FF 02 01 02");
-  board.send(dropped);
-  board.expect_silence();
-  board.send(with_length(idle(), 2));
-  board.expect_answer();
+  board.expect_silence(dropped);
+  board.expect_answer(with_length(idle(), 2));
   board.pause(BoardBench::kPassTime);
   expect_reported(board, board.ask(with_code(42)), {21, 22, 23, 24, 25, 26});
   board.act(idle());
@@ -101,8 +80,8 @@ void dropped_stays(BoardBench& board) {
 
 void long_tail(BoardBench& board) {
   board.about("an idle frame of length 60 with speeds 31 to 36");
-  board.send(with_length(idle_with({31, 32, 33, 34, 35, 36}), 60));
-  board.expect(board.expect_answer(), "echo", 255);
+  board.expect(board.expect_answer(with_length(with_speeds(255, {31, 32, 33, 34, 35, 36}), 60)),
+               "echo", 255);
   board.pause(BoardBench::kPassTime);
   expect_reported(board, board.ask(with_code(42)), {31, 32, 33, 34, 35, 36});
   board.act(idle());
@@ -114,29 +93,25 @@ void length_zero(BoardBench& board) {
   board.spoil();
   board.send(kLengthZero);
   board.about("255 bytes behind a length of 0");
-  board.send(std::vector(255, std::byte{0x55}));
-  board.expect_silence();
+  board.expect_silence(std::vector(255, std::byte{0x55}));
   board.about("the payload of a frame, as its 256th byte says 52");
-  board.send(Bytes{encode(with_code(42))}.subspan(kHeaderSize - 1));
-  board.expect(board.expect_answer(), "echo", 42);
+  board.expect(board.expect_answer(Bytes{encode(with_code(42))}.subspan(kHeaderSize - 1)), "echo",
+               42);
 }
 
 void length_zero_harmless(BoardBench& board) {
   board.spoil();
   board.about("a good frame behind FF FF FF 00");
   board.send(kLengthZero);
-  board.send(encode(idle()));
-  board.expect_answer();
+  board.expect_answer(encode(idle()));
 }
 
 void length_one(BoardBench& board) {
   for (const auto byte : {std::byte{1}, std::byte{2}, std::byte{0x55}}) {
     board.about("FF FF FF 01 and a byte");
-    board.send(std::vector{kStartByte, kStartByte, kStartByte, std::byte{1}, byte});
-    board.expect_silence();
+    board.expect_silence(std::vector{kStartByte, kStartByte, kStartByte, std::byte{1}, byte});
     board.about("the frame behind one of length 1");
-    board.send(encode(idle()));
-    board.expect_answer();
+    board.expect_answer(encode(idle()));
   }
 }
 
@@ -144,47 +119,43 @@ void stray_start(BoardBench& board) {
   board.send(std::vector{kStartByte});
   for (int i = 1; i <= 5; ++i) {
     board.about(fmt::format("frame {} behind a stray FF", i));
-    board.send(encode(idle()));
-    board.expect_silence();
+    board.expect_silence(encode(idle()));
   }
   board.about("frame 6 behind a stray FF");
-  board.send(encode(idle()));
-  board.expect_answer();
+  board.expect_answer(encode(idle()));
 }
 
 void resync(BoardBench& board) {
   for (const std::size_t size : {1U, 2U, 3U, 7U, 300U}) {
     board.about(fmt::format("a good frame behind {} start bytes", size));
     board.send(std::vector(size, kStartByte));
-    board.send(encode(idle()));
-    board.expect_answer();
+    board.expect_answer(encode(idle()));
   }
 }
 
+constexpr std::size_t kCuts[] = {4, 30, 54};
+
+/// The next frame is the first behind it.
 void send_cut(BoardBench& board, std::size_t size) {
   board.send(Bytes{encode(idle())}.first(size));
+  board.about(fmt::format("the first frame behind one cut after {} bytes", size));
 }
 
 void cut_short(BoardBench& board) {
-  for (const std::size_t size : {4U, 30U, 54U}) {
+  for (const auto size : kCuts) {
     send_cut(board, size);
-    board.about(fmt::format("the first frame behind one cut after {} bytes", size));
-    board.send(encode(idle()));
-    board.expect_silence();
+    board.expect_silence(encode(idle()));
     for (const auto* which : {"second", "third"}) {
       board.about(fmt::format("the {} frame behind one cut after {} bytes", which, size));
-      board.send(encode(idle()));
-      board.expect_answer();
+      board.expect_answer(encode(idle()));
     }
   }
 }
 
 void cut_harmless(BoardBench& board) {
-  for (const std::size_t size : {4U, 30U, 54U}) {
+  for (const auto size : kCuts) {
     send_cut(board, size);
-    board.about(fmt::format("the first frame behind one cut after {} bytes", size));
-    board.send(encode(idle()));
-    board.expect_answer();
+    board.expect_answer(encode(idle()));
   }
 }
 
@@ -210,16 +181,10 @@ constexpr Case kCases[] = {
     {.requirement = "parol6.receive.long-tail",
      .rule = "A frame of length 60 sets the speeds of its first 50 bytes.",
      .run = on<long_tail>},
-    {.requirement = "parol6.receive.length-zero",
-     .rule = "The 256th byte behind a length of 0 is the next length.",
-     .run = on<length_zero>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
-    {.requirement = "parol6.receive.length-zero-harmless",
-     .rule = "A length of 0 costs no good frame.",
-     .run = on<length_zero_harmless>,
-     .hazard = Hazard::kState,
-     .start = kFresh},
+    from(kFresh, Hazard::kState, "parol6.receive.length-zero",
+         "The 256th byte behind a length of 0 is the next length.", on<length_zero>),
+    from(kFresh, Hazard::kState, "parol6.receive.length-zero-harmless",
+         "A length of 0 costs no good frame.", on<length_zero_harmless>),
     {.requirement = "parol6.receive.length-one",
      .rule = "A length of 1 gets no answer and costs no good frame.",
      .run = on<length_one>},
@@ -241,4 +206,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> receive_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

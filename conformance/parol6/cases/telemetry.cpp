@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include "conformance/parol6/cases.hpp"
 
-#include <cmath>
-
-#include "conformance/parol6/board_bench.hpp"
-#include "conformance/parol6/chapters.hpp"
-#include "conformance/parol6/motion.hpp"
-
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// Codes that neither move anything nor change a state.
 constexpr int kHarmlessCodes[] = {0, 1, 42, 99, 104, 122, 124, 155, 157, 200, 254, 255};
 
-void layout(BoardBench& board) {
-  board.send(encode(idle()));
-  const auto message = board.receive(board.answer_time());
-  if (!message) return board.fail_by_silence("a telemetry frame", "silence");
-  if (!message->fault.empty()) board.fail("60 bytes FF FF FF 38 ... 01 02", message->fault);
-}
+void layout(BoardBench& board) { board.expect_whole(); }
 
 void check(BoardBench& board) { board.expect(board.ask(idle()), "check", kCheckBoard); }
 
@@ -177,12 +164,6 @@ void timing_dropped(BoardBench& board) {
   expect_interval(board, before, board.ask(idle()));
 }
 
-CommandFrame idle_with(const Speeds& speeds) {
-  auto frame = jog(speeds);
-  frame.command = Command::kIdle;
-  return frame;
-}
-
 void old_motion(BoardBench& board) {
   const auto before = board.ask(idle());
   const auto first = board.act(jog(4, 500));
@@ -254,19 +235,19 @@ void idle_speed(BoardBench& board) {
   for (std::size_t turn = 0; turn < kJointCount; ++turn) {
     Speeds speeds{};
     for (std::size_t j = 0; j < kJointCount; ++j) speeds[j] = kSpeeds[(j + turn) % kJointCount];
-    board.act(idle_with(speeds));
-    expect_reported(board, board.ask(idle_with(speeds)), speeds);
+    board.act(with_speeds(255, speeds));
+    expect_reported(board, board.ask(with_speeds(255, speeds)), speeds);
   }
   board.act(idle());
 }
 
 void idle_reports_zero(BoardBench& board) {
-  board.act(idle_with({1, -1, 255, -256, 40'000, -49'999}));
+  board.act(with_speeds(255, {1, -1, 255, -256, 40'000, -49'999}));
   expect_reported(board, board.ask(idle()), {});
 }
 
 void idle_speed_clamped(BoardBench& board) {
-  board.act(idle_with({50'000, -50'000, 50'001, -50'001, 8'388'607, -8'388'608}));
+  board.act(with_speeds(255, {50'000, -50'000, 50'001, -50'001, 8'388'607, -8'388'608}));
   expect_reported(board, board.ask(idle()), {50'000, -50'000, 50'000, -50'000, 50'000, -50'000});
   board.act(idle());
 }
@@ -290,17 +271,10 @@ constexpr Case kCases[] = {
      .variant = "idle",
      .rule = "All position errors of an idle board are 0.",
      .run = on<no_position_error>},
-    {.requirement = "parol6.telemetry.no-position-error",
-     .variant = "outside",
-     .rule = "J5 beyond its range is no error.",
-     .run = on<no_position_error_outside>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.telemetry.position-error",
-     .rule = "J5 beyond its range is an error until clear error.",
-     .run = on<position_error>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
+    from(kHomed, Hazard::kMove, "parol6.telemetry.no-position-error",
+         "J5 beyond its range is no error.", on<no_position_error_outside>, "outside"),
+    from(kHomed, Hazard::kMove, "parol6.telemetry.position-error",
+         "J5 beyond its range is an error until clear error.", on<position_error>),
     {.requirement = "parol6.telemetry.timeout-error",
      .rule = "The timeout error is 100.",
      .run = on<timeout_error>},
@@ -308,28 +282,18 @@ constexpr Case kCases[] = {
      .variant = "idle",
      .rule = "The gripper id is 0 while nothing is commanded.",
      .run = on<plain_gripper_id>},
-    {.requirement = "parol6.telemetry.gripper-id",
-     .variant = "commanded",
-     .rule = "The gripper id is 0 after a set-point for node 5.",
-     .run = on<gripper_id>,
-     .hazard = Hazard::kGrip},
-    {.requirement = "parol6.telemetry.gripper-id-echoed",
-     .rule = "The gripper id is 5 after a set-point for node 5.",
-     .run = on<gripper_id_echoed>,
-     .hazard = Hazard::kGrip},
+    from(kListening, Hazard::kGrip, "parol6.telemetry.gripper-id",
+         "The gripper id is 0 after a set-point for node 5.", on<gripper_id>, "commanded"),
+    from(kListening, Hazard::kGrip, "parol6.telemetry.gripper-id-echoed",
+         "The gripper id is 5 after a set-point for node 5.", on<gripper_id_echoed>),
     {.requirement = "parol6.telemetry.gripper-speed",
      .variant = "idle",
      .rule = "The gripper speed is 1 while nothing is commanded.",
      .run = on<plain_gripper_speed>},
-    {.requirement = "parol6.telemetry.gripper-speed",
-     .variant = "commanded",
-     .rule = "The gripper speed is 1 after a set-point with speed 77.",
-     .run = on<gripper_speed>,
-     .hazard = Hazard::kGrip},
-    {.requirement = "parol6.telemetry.gripper-speed-echoed",
-     .rule = "The gripper speed is 77 after a set-point with speed 77.",
-     .run = on<gripper_speed_echoed>,
-     .hazard = Hazard::kGrip},
+    from(kListening, Hazard::kGrip, "parol6.telemetry.gripper-speed",
+         "The gripper speed is 1 after a set-point with speed 77.", on<gripper_speed>, "commanded"),
+    from(kListening, Hazard::kGrip, "parol6.telemetry.gripper-speed-echoed",
+         "The gripper speed is 77 after a set-point with speed 77.", on<gripper_speed_echoed>),
     {.requirement = "parol6.telemetry.gripper-object",
      .rule = "The object byte is 1.",
      .run = on<gripper_object>},
@@ -339,12 +303,8 @@ constexpr Case kCases[] = {
     {.requirement = "parol6.telemetry.echo",
      .rule = "Codes without effect are echoed.",
      .run = on<echo>},
-    {.requirement = "parol6.telemetry.echo",
-     .variant = "all",
-     .rule = "A disabled board echoes all codes but 69, which it would obey.",
-     .run = on<echo_of_all>,
-     .hazard = Hazard::kHome,
-     .start = kHomed},
+    from(kHomed, Hazard::kHome, "parol6.telemetry.echo",
+         "A disabled board echoes all codes but 69, which it would obey.", on<echo_of_all>, "all"),
     {.requirement = "parol6.telemetry.timing",
      .rule = "The timing field measures gaps up to 85 ms.",
      .run = on<timing>},
@@ -358,40 +318,20 @@ constexpr Case kCases[] = {
     {.requirement = "parol6.telemetry.timing-dropped",
      .rule = "A dropped frame does not begin a new interval.",
      .run = on<timing_dropped>},
-    {.requirement = "parol6.telemetry.old-motion",
-     .rule = "The first answer to a jog shows rest, the second one its speed.",
-     .run = on<old_motion>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.telemetry.speed-own-joint",
-     .rule = "A jog of one joint shows in one speed field.",
-     .run = on<speed_own_joint>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.telemetry.speed-signed",
-     .rule = "Six slow jogs backward show as -1 to -6.",
-     .run = on<speed_signed>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.telemetry.speed-big-endian",
-     .rule = "Speeds whose bytes differ come back as they were.",
-     .run = on<speed_big_endian>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.telemetry.position-own-joint",
-     .rule = "A jog of one joint shows in one position field.",
-     .run = on<position_own_joint>,
-     .hazard = Hazard::kMove,
-     .start = kEnabled},
-    {.requirement = "parol6.telemetry.position-signed",
-     .rule = "J4 and J5 below 0 have small negative positions.",
-     .run = on<position_signed>,
-     .hazard = Hazard::kMove,
-     .start = kHomed},
-    {.requirement = "parol6.telemetry.position-big-endian",
-     .rule = "The six standby positions stand where they belong.",
-     .run = on<position_big_endian>,
-     .start = kHomed},
+    from(kEnabled, Hazard::kMove, "parol6.telemetry.old-motion",
+         "The first answer to a jog shows rest, the second one its speed.", on<old_motion>),
+    from(kEnabled, Hazard::kMove, "parol6.telemetry.speed-own-joint",
+         "A jog of one joint shows in one speed field.", on<speed_own_joint>),
+    from(kEnabled, Hazard::kMove, "parol6.telemetry.speed-signed",
+         "Six slow jogs backward show as -1 to -6.", on<speed_signed>),
+    from(kEnabled, Hazard::kMove, "parol6.telemetry.speed-big-endian",
+         "Speeds whose bytes differ come back as they were.", on<speed_big_endian>),
+    from(kEnabled, Hazard::kMove, "parol6.telemetry.position-own-joint",
+         "A jog of one joint shows in one position field.", on<position_own_joint>),
+    from(kHomed, Hazard::kMove, "parol6.telemetry.position-signed",
+         "J4 and J5 below 0 have small negative positions.", on<position_signed>),
+    from(kHomed, Hazard::kObserve, "parol6.telemetry.position-big-endian",
+         "The six standby positions stand where they belong.", on<position_big_endian>),
     {.requirement = "parol6.telemetry.idle-speed",
      .rule = "Speeds of idle frames come back, joint by joint.",
      .run = on<idle_speed>},
@@ -407,4 +347,4 @@ constexpr Case kCases[] = {
 
 std::span<const Case> telemetry_cases() noexcept { return kCases; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/parol6/chapters.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
 constexpr auto kHidden = "the CAN between board and gripper cannot be seen on the serial link";
@@ -109,4 +109,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> gripper_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/parol6/chapters.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::conformance {
 namespace {
 
 constexpr Requirement kRequirements[] = {
@@ -60,4 +60,4 @@ constexpr Requirement kRequirements[] = {
 
 std::span<const Requirement> receive_requirements() noexcept { return kRequirements; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::conformance

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/parol6/host/checker.hpp"
+#include "conformance/parol6/host/check.hpp"
 
 #include <utility>
 #include <variant>
@@ -10,7 +10,7 @@
 #include "conformance/parol6/host/pace.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 namespace {
 
 class HostChecker final : public ProgramChecker {
@@ -52,10 +52,6 @@ class HostChecker final : public ProgramChecker {
     ++frames_;
   }
 
-  Complain complain_ = [this](std::string_view requirement, std::string what) {
-    add(now_, requirement, std::move(what));
-  };
-  Instant now_{};
   std::size_t frames_ = 0;
   Framing framing_;
   GripperConduct gripper_;
@@ -66,8 +62,8 @@ class HostChecker final : public ProgramChecker {
 
 }  // namespace
 
-std::unique_ptr<ProgramChecker> make_host_checker(const LinkNoise& noise) {
-  return std::make_unique<HostChecker>(noise);
+ProgramCheckEntry program_check() noexcept {
+  return {"parol6", host_requirements, make_checker<HostChecker>};
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

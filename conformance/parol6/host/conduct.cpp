@@ -10,7 +10,7 @@
 #include "harness/wire/parol6/joint_bounds.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -55,10 +55,6 @@ bool has_speed(const CommandFrame& frame) noexcept {
 /// In steps/s (parol6.goto.law).
 double go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept {
   return (100.0 * (goal.value - position.value) + feed.value) / 2;
-}
-
-double milliseconds(Duration duration) {
-  return std::chrono::duration<double, std::milli>{duration}.count();
 }
 
 int code(Command command) noexcept { return static_cast<int>(command); }
@@ -285,4 +281,4 @@ void Conduct::telemetry(Instant time, const TelemetryFrame& frame) {
   if (homing_ == Homing::kRuns && is_homed(frame)) homing_ = Homing::kNo;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

@@ -4,11 +4,11 @@
 #include <array>
 #include <optional>
 
-#include "conformance/parol6/host/complain.hpp"
+#include "conformance/program_checker.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 
 /// Judges what a program commands, given what telemetry told it and what it commanded before. It
 /// starts from the power-up of a board: enabled, not homed.
@@ -72,4 +72,4 @@ class Conduct {
   std::optional<Held> held_;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

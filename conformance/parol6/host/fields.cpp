@@ -9,7 +9,7 @@
 
 #include "harness/wire/parol6/fields.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 namespace {
 
 constexpr std::uint8_t kMove = 0;
@@ -124,4 +124,4 @@ void GripperConduct::judge_move(const GripperSetPoint& wanted,
   }
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

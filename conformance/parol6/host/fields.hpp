@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "conformance/parol6/host/complain.hpp"
+#include "conformance/program_checker.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 
 /// Judges one frame by its values alone. The vendor's GUI begins with a frame of start values whose
 /// code is 0: that is nobody's mistake.
@@ -27,4 +27,4 @@ class GripperConduct {
   std::optional<GripperSetPoint> forgotten_;  ///< changed in a frame that did not send it
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

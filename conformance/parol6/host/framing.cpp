@@ -9,7 +9,7 @@
 #include "harness/core/hex.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 namespace {
 
 constexpr Duration kPeriod = std::chrono::milliseconds{10};
@@ -97,4 +97,4 @@ void Framing::judge_stray(Bytes stray, bool is_before_frame) {
   }
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

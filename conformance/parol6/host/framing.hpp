@@ -7,12 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "conformance/parol6/host/complain.hpp"
+#include "conformance/program_checker.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/dissector.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 
 /// Finds the frames in what a program sends and says what is wrong with the bytes that are none.
 class Framing {
@@ -37,4 +37,4 @@ class Framing {
   std::size_t excused_ = 0;     ///< bytes that belong to a frame of a wrong length
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

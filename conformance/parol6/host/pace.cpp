@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -50,4 +50,4 @@ void Pace::judge_window(Instant time, const Complain& complain) const {
   }
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "conformance/parol6/host/complain.hpp"
+#include "conformance/program_checker.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 
 /// Judges when a program sends its frames.
 class Pace {
@@ -25,4 +25,4 @@ class Pace {
   int off_beat_ = 0;  ///< of them, those that came too early or too late
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

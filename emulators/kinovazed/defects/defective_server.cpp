@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 std::string_view text_of(Bytes bytes) noexcept {
@@ -153,6 +153,13 @@ bool DefectiveServer::set_input(Instant time, std::string_view name, std::int64_
   return is_known;
 }
 
+std::vector<std::string> DefectiveServer::take_log() {
+  std::vector<std::string> lines;
+  for (const auto& line : server_.log()) lines.push_back(line.text);
+  server_.clear_log();
+  return lines;
+}
+
 void DefectiveServer::restart(Instant time) {
   for (const auto id : open_) later_.push_back({time, id, SessionEvent::Kind::kReset, {}});
   open_.clear();
@@ -204,4 +211,4 @@ bool DefectiveServer::set_joystick(Plant& plant, std::string_view name, std::int
   return true;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -13,7 +13,7 @@
 #include "emulators/kinovazed/server.hpp"
 #include "harness/core/device_input.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// All that `DefectiveServer::set_input` knows; `CALL` stands for each of `kArmCallNames`.
 [[nodiscard]] std::span<const DeviceInput> server_inputs() noexcept;
@@ -40,8 +40,11 @@ class DefectiveServer {
   [[nodiscard]] std::optional<Instant> next_event() const noexcept;
   [[nodiscard]] std::span<const ServerEvent> sent() const noexcept { return sent_; }
   void clear_sent() noexcept { sent_.clear(); }
+  [[nodiscard]] static std::span<const DeviceInput> inputs() noexcept { return server_inputs(); }
   [[nodiscard]] const std::deque<LogLine>& log() const noexcept { return server_.log(); }
   void clear_log() noexcept { server_.clear_log(); }
+  /// What the server has written to its log since the last call.
+  [[nodiscard]] std::vector<std::string> take_log();
 
  private:
   [[nodiscard]] bool is_known(ConnectionId id) const noexcept { return id >= first_id_; }
@@ -67,4 +70,6 @@ class DefectiveServer {
   std::vector<ServerEvent> sent_;
 };
 
-}  // namespace armjig::kinovazed
+static_assert(EmulatedMultiServer<DefectiveServer>);
+
+}  // namespace armjig::kinovazed::emulation

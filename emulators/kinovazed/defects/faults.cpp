@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 using Flag = bool Behaviour::*;
@@ -282,4 +282,4 @@ std::vector<NamedFault> all_faults() {
   return all;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

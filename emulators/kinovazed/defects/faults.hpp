@@ -10,7 +10,7 @@
 #include "emulators/kinovazed/server.hpp"
 #include "harness/core/error.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// Adds a fault of an emulated server as users write it:
 ///
@@ -33,4 +33,4 @@ namespace armjig::kinovazed {
 /// Every fault that there is, as `add_fault` reads it.
 [[nodiscard]] std::vector<NamedFault> all_faults();
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

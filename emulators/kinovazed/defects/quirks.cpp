@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -333,4 +333,4 @@ std::span<const Quirk> quirks() {
   return kAll;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -11,7 +11,7 @@
 #include "emulators/kinovazed/machine.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 
 /// What a quirk remembers, each its own.
 struct QuirkMemory {
@@ -43,4 +43,4 @@ struct Quirk {
 /// Those that were written by hand.
 [[nodiscard]] std::span<const Quirk> quirks();
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

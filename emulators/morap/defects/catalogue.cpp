@@ -7,7 +7,7 @@
 #include "emulators/morap/defects/defects.hpp"
 #include "harness/wire/morap/fields.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 using Spoil = void (*)(NodeSetup& setup);
@@ -260,4 +260,4 @@ std::vector<NamedFault> all_faults() {
   return list.take();
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -8,7 +8,7 @@
 
 #include "harness/wire/morap/fields.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 using Words = std::vector<std::byte>;
@@ -243,4 +243,4 @@ bool DefectiveNode::set_input(Instant time, std::string_view name, std::int64_t 
   return true;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

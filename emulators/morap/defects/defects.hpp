@@ -13,7 +13,7 @@
 #include "emulators/morap/node.hpp"
 #include "harness/core/error.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// In a motor status a command does something else.
 struct WrongRow {
@@ -66,6 +66,7 @@ class DefectiveNode {
   [[nodiscard]] Duration stretch() const;
   void advance_to(Instant time) noexcept { node_.advance_to(time); }
   void restart(Instant time);
+  [[nodiscard]] Node& node() noexcept { return node_; }
 
   /// What no bus can do:
   ///
@@ -101,4 +102,4 @@ class DefectiveNode {
 };
 static_assert(EmulatedBusDevice<DefectiveNode>);
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

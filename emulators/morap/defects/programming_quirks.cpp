@@ -8,7 +8,7 @@
 #include "emulators/morap/defects/quirk_words.hpp"
 #include "emulators/morap/eeprom.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 using enum CommandId;
@@ -369,4 +369,4 @@ constexpr auto kQuirks = std::to_array<Quirk>({
 
 std::span<const Quirk> programming_quirks() noexcept { return kQuirks; }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

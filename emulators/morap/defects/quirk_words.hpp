@@ -9,7 +9,7 @@
 #include "harness/wire/morap/message.hpp"
 
 /// The words in which quirks are written.
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// Those about parameter messages, tuning and what is cut short.
 [[nodiscard]] std::span<const Quirk> programming_quirks() noexcept;
@@ -38,7 +38,7 @@ inline void become_refused(Words& command) {
 }
 
 inline void set_float(Words& bytes, std::size_t place, float value) {
-  std::ranges::copy(encode(value), bytes.begin() + static_cast<std::ptrdiff_t>(place));
+  std::ranges::copy(morap::encode(value), bytes.begin() + static_cast<std::ptrdiff_t>(place));
 }
 inline float float_at(const Words& bytes, std::size_t place) {
   return load_f32_le(slice<4>(Bytes{bytes}, place));
@@ -48,4 +48,4 @@ inline bool answers_set(const Node& node) noexcept {
   return find_reading(node.selected())->kind == ReadKind::kControllerSet;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

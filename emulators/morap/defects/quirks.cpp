@@ -9,7 +9,7 @@
 
 #include "emulators/morap/defects/quirk_words.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -258,4 +258,4 @@ std::span<const Quirk> quirks() noexcept {
   return kAll;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

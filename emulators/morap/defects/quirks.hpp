@@ -10,7 +10,7 @@
 #include "emulators/morap/node.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 
 /// What a quirk remembers.
 struct QuirkMemory {
@@ -41,4 +41,4 @@ struct Quirk {
 
 [[nodiscard]] std::span<const Quirk> quirks() noexcept;
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

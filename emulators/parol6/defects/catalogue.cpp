@@ -7,7 +7,7 @@
 #include "emulators/parol6/defects/defects.hpp"
 #include "harness/wire/parol6/fields.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 constexpr std::array kStates{Named<BoardState>{"enabled", BoardState::kEnabled},
@@ -309,4 +309,4 @@ std::vector<NamedFault> all_faults() {
   return list.take();
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 constexpr bool has_meaning(Command code) noexcept {
@@ -135,4 +135,4 @@ SentBytes DefectiveArm::changed(const SentBytes& answer) {
   return {answer.time, {bytes.begin(), bytes.end()}};
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -14,7 +14,7 @@
 #include "emulators/parol6/defects/quirks.hpp"
 #include "harness/core/error.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// The states of the command table (docs/spec/parol6.md, "Commands").
 enum class BoardState : std::uint8_t { kEnabled, kDisabled, kHoming };
@@ -79,6 +79,7 @@ class DefectiveArm {
   [[nodiscard]] std::span<const SentBytes> sent() const noexcept { return sent_; }
   void clear_sent() noexcept { sent_.clear(); }
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
+  [[nodiscard]] static std::span<const DeviceInput> inputs() noexcept { return arm_inputs(); }
 
  private:
   /// A frame that waits for its answer.
@@ -109,4 +110,4 @@ class DefectiveArm {
 
 static_assert(EmulatedStream<DefectiveArm>);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -125,4 +125,4 @@ bool Ears::takes(Instant time, std::size_t size) {
   }
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

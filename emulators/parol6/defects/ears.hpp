@@ -9,7 +9,7 @@
 #include "emulators/parol6/command_receiver.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// What may be wrong with the way in which a board receives.
 enum class EarDefect : std::uint8_t {
@@ -64,4 +64,4 @@ class Ears {
   Instant deaf_until_{};
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -8,7 +8,7 @@
 
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 constexpr std::uint8_t kJointFlags = 0xFC;
@@ -275,4 +275,4 @@ constexpr std::array kQuirks{
 
 std::span<const Quirk> quirks() noexcept { return kQuirks; }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

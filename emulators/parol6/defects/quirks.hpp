@@ -10,7 +10,7 @@
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// What a quirk knows when a frame is heard or answered.
 struct Exchange {
@@ -37,4 +37,4 @@ struct Quirk {
 
 [[nodiscard]] std::span<const Quirk> quirks() noexcept;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::drive {
 namespace {
 
 constexpr Duration kAttempt = std::chrono::seconds{1};  ///< to connect, and between two of them
@@ -145,4 +145,4 @@ std::optional<Ending> Client::take_ending(RequestId request) {
   return ending;
 }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::drive

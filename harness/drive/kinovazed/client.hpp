@@ -9,7 +9,7 @@
 #include "harness/drive/kinovazed/drive.hpp"
 #include "harness/link/session_port.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::drive {
 
 /// What may end the wait for a command.
 struct CallOptions {
@@ -108,4 +108,4 @@ class Client {
   std::function<void(Instant, Bytes)> listener_;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::drive

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::drive {
 namespace {
 
 using std::chrono::seconds;
@@ -298,4 +298,4 @@ void Drive::end(Instant now, Place request, Ending ending) {
 std::string Drive::take_outgoing() { return std::exchange(outgoing_, {}); }
 std::vector<DriveEvent> Drive::take_events() { return std::exchange(events_, {}); }
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::drive

@@ -14,7 +14,7 @@
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/kinovazed/line_splitter.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::drive {
 
 /// How long a drive waits (docs/spec/kinovazed.md, "Times"; arm and TCP have their share in it).
 namespace patience {
@@ -168,4 +168,4 @@ class Drive {
   std::optional<Instant> mode_changed_;
 };
 
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::drive

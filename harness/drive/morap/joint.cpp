@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace armjig::morap {
+namespace armjig::morap::drive {
 namespace {
 
 constexpr std::uint16_t kHighestRate = 1500;  // Hz; beyond it a node has no time left
@@ -42,6 +42,23 @@ std::string_view describe(ProgramOutcome outcome) noexcept {
       return "the node refuses the parameters";
     case ProgramOutcome::kNotActive:
       return "accepted, but the node shows other parameters";
+  }
+  return {};
+}
+
+std::optional<TuneKind> tune_kind(std::string_view name) noexcept {
+  if (name == "pd") return TuneKind::kPdPosition;
+  if (name == "pid") return TuneKind::kPidPosition;
+  if (name == "pi") return TuneKind::kPiSpeed;
+  return std::nullopt;
+}
+
+std::string refusal_of(const TuneRequest& request) {
+  if (!(request.inertia > 0.0F && request.inertia <= 10.0F)) {
+    return "the inertia has to be above 0 and at most 10 kg m^2";
+  }
+  if (!(request.pole < 0.0F && request.pole >= -200.0F)) {
+    return "the pole has to be below 0 and at least -200 1/s";
   }
   return {};
 }
@@ -100,4 +117,4 @@ ProgramResult Joint::program_verified(const Command& command, ControllerKind kin
   return result;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

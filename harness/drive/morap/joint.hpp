@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "harness/core/quantity.hpp"
@@ -10,7 +12,7 @@
 #include "harness/wire/morap/message.hpp"
 #include "harness/wire/morap/pen.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::drive {
 
 // In the single precision of the wire.
 using Angle = Quantity<unit::Radians, float>;
@@ -41,6 +43,12 @@ enum class ProgramOutcome : std::uint8_t {
 
 /// Whether a node may run a set: counts are 1 to 4, the rate is 1 to 1500 Hz, all else is finite.
 [[nodiscard]] bool is_safe(const ControllerSet& set) noexcept;
+
+/// Its name on command lines: `pd`, `pid` or `pi`.
+[[nodiscard]] std::optional<TuneKind> tune_kind(std::string_view name) noexcept;
+
+/// Why the shipped node refuses a request; empty if it does not.
+[[nodiscard]] std::string refusal_of(const TuneRequest& request);
 
 struct ProgramResult {
   ProgramOutcome outcome{};
@@ -151,4 +159,4 @@ class PenDrive {
   Master* master_;
 };
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

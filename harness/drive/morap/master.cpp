@@ -3,7 +3,7 @@
 
 #include <tuple>
 
-namespace armjig::morap {
+namespace armjig::morap::drive {
 namespace {
 
 BusCode code_of(Error error, BusCode collision) noexcept {
@@ -41,6 +41,21 @@ std::string_view describe(BusCode code) noexcept {
       return "not allowed by the guard";
   }
   return {};
+}
+
+ErrorCode error_of(BusCode code) noexcept {
+  switch (code) {
+    case BusCode::kNoSuchAddress:
+      return ErrorCode::kNotFound;
+    case BusCode::kTimedOut:
+      return ErrorCode::kTimedOut;
+    case BusCode::kGone:
+      return ErrorCode::kDisconnected;
+    case BusCode::kForbidden:
+      return ErrorCode::kForbidden;
+    default:
+      return ErrorCode::kBusy;
+  }
 }
 
 /// Of a bus that does whole transactions only. It ends them at the first byte that is refused.
@@ -108,4 +123,4 @@ ScanResult Master::scan() {
   return result;
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

@@ -9,7 +9,7 @@
 #include "harness/core/bytes.hpp"
 #include "harness/link/bus_port.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::drive {
 
 /// How a transaction ended: the codes of the vendor's master library, and some of ours.
 enum class BusCode : std::uint8_t {
@@ -25,6 +25,9 @@ enum class BusCode : std::uint8_t {
 
 /// One sentence without a full stop.
 [[nodiscard]] std::string_view describe(BusCode code) noexcept;
+
+/// The error that it is to users. Requires that it is not `kOk`.
+[[nodiscard]] ErrorCode error_of(BusCode code) noexcept;
 
 /// Who answered, up to the end or to the first trouble with the bus.
 struct ScanResult {
@@ -57,4 +60,4 @@ class Master {
   BusPort* port_;
 };
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

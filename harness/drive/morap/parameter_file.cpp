@@ -8,7 +8,7 @@
 
 #include "harness/config/toml_table.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::drive {
 namespace {
 
 ControllerKind read_kind(TomlTable& table) {
@@ -83,4 +83,4 @@ std::string to_toml(const ControllerSet& set) {
          fmt::format("integral = {}\n", to_text(set.integral));
 }
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

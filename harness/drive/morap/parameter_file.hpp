@@ -15,7 +15,7 @@
 ///     c = [-8.20585251, 9.26544857]   # of the reference
 ///     f = [-0.956420779]              # of earlier outputs
 ///     integral = 0.0
-namespace armjig::morap {
+namespace armjig::morap::drive {
 
 /// Reads such a file. Numbers are rounded to single precision. Problems: `kCannotRead`,
 /// `kMalformed`; they name path and line.
@@ -27,4 +27,4 @@ namespace armjig::morap {
 /// Requires a position or speed controller and counts of at most four.
 [[nodiscard]] std::string to_toml(const ControllerSet& set);
 
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

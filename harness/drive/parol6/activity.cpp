@@ -14,7 +14,7 @@
 #include "harness/wire/parol6/joints.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
 using namespace std::chrono_literals;
@@ -450,4 +450,4 @@ std::string place_of(std::size_t joint, Steps position) {
                      kJoints[joint].angle(position).value);
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -16,7 +16,7 @@
 
 /// What takes longer than a frame: begun on a drive, it goes on while `step` is called after each
 /// cycle, until telemetry shows that it was done, or why not. No I/O.
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 
 class Activity {
  public:
@@ -90,4 +90,4 @@ class Activity {
 /// `j1 734 steps (6.4512 deg)`.
 [[nodiscard]] std::string place_of(std::size_t joint, Steps position);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -10,7 +10,7 @@
 
 #include "harness/wire/parol6/fields.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
 using namespace std::chrono_literals;
@@ -242,4 +242,4 @@ void Drive::add_event(DriveEvent::Kind kind, Instant now, Command command,
 
 std::vector<DriveEvent> Drive::take_events() { return std::exchange(events_, {}); }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

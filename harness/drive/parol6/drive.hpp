@@ -17,7 +17,7 @@
 #include "harness/wire/parol6/frame.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 
 /// What happened on the link. A frame is lost if no answer came that could be its own.
 struct DriveStatistics {
@@ -145,4 +145,4 @@ class Drive {
   }
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

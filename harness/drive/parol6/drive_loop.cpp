@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 
 Result<void> DriveLoop::receive_until(Instant time) {
   std::array<std::byte, 4096> buffer;
@@ -25,4 +25,4 @@ Result<void> DriveLoop::cycle() {
   return port_.write(drive_.tick(port_.now()));
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -9,7 +9,7 @@
 #include "harness/timing/latency_histogram.hpp"
 #include "harness/timing/schedule.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 
 /// Runs a drive over a port, a frame each period on absolute deadlines; in virtual time if the port
 /// has it. For one thread.
@@ -39,4 +39,4 @@ class DriveLoop {
   LatencyHistogram jitter_;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
@@ -44,4 +44,4 @@ Glide::SetPoint Glide::at(Duration since_start) const noexcept {
   return point;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

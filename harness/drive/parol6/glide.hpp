@@ -4,7 +4,7 @@
 #include "harness/core/time.hpp"
 #include "harness/drive/parol6/drive.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 
 /// A way from where the joints are to where they shall be, in set-points for `Drive::go_to`. A far
 /// target must not be sent at once, for the board closes any distance in 10 ms if it can. All
@@ -32,4 +32,4 @@ class Glide {
   Duration duration_{};
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

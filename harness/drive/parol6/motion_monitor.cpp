@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
 using namespace std::chrono_literals;
@@ -81,4 +81,4 @@ MotionMonitor::Findings MotionMonitor::observe(Instant now, const CommandFrame& 
   return findings;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

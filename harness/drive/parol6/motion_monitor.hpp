@@ -9,7 +9,7 @@
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 
 /// Compares what a board says it does with what its counters show. Fed with every telemetry frame
 /// and the command that the board acts on.
@@ -43,4 +43,4 @@ class MotionMonitor {
   bool has_moved_on_ = false;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -6,7 +6,7 @@
 
 #include "harness/core/time.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 
 /// So long telemetry has to show the same places until the arm is said to stand.
 inline constexpr Duration kToStand = std::chrono::milliseconds{50};
@@ -27,4 +27,4 @@ class Stillness {
   Instant since_{};
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

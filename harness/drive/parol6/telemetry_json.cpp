@@ -11,7 +11,7 @@
 #include "harness/wire/parol6/joints.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -85,4 +85,4 @@ std::string to_json(Instant time, const TelemetryFrame& frame, const DriveStatis
   return json.dump();
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -13,9 +13,10 @@
 #include "harness/motion/parol6/conversion.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
+using namespace planning;
 using Ending = Activity::Ending;
 
 /// In mm and degrees, as the vendor's program shows it.
@@ -82,4 +83,4 @@ Result<std::unique_ptr<Activity>> begin_tool_jog(Drive& drive, const CartesianJo
   return std::make_unique<ToolJog>(jog, time);
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

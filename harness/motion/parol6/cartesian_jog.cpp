@@ -10,7 +10,7 @@
 #include "harness/arm/models.hpp"
 #include "harness/motion/parol6/conversion.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -70,4 +70,4 @@ tl::expected<JointSpeeds, Refusal> CartesianJogger::speeds(const CartesianJog& j
   return speeds;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -7,7 +7,7 @@
 #include "harness/arm/jacobian.hpp"
 #include "harness/motion/parol6/planner.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 enum class JogFrame : std::uint8_t { kWorld, kTool };
 
@@ -39,4 +39,4 @@ class CartesianJogger {
   arm::Arm arm_;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

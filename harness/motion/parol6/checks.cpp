@@ -5,7 +5,7 @@
 
 #include "harness/motion/parol6/conversion.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 /// What a sum of roundings may exceed a limit by.
@@ -70,4 +70,4 @@ std::optional<Refusal> check_peak(std::size_t joint, const Peak& peak) noexcept 
   return std::nullopt;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

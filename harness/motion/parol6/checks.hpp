@@ -10,7 +10,7 @@
 #include "harness/motion/parol6/planner.hpp"
 
 /// What is looked at before the first frame of a move leaves.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// A percentage outside 0 to 100.
 [[nodiscard]] std::optional<Refusal> check_percent(double percent) noexcept;
@@ -37,4 +37,4 @@ struct Peak {
 };
 [[nodiscard]] std::optional<Refusal> check_peak(std::size_t joint, const Peak& peak) noexcept;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -8,7 +8,7 @@
 
 #include "harness/arm/jacobian.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 using std::numbers::pi;
@@ -70,4 +70,4 @@ CommanderIkAnswer commander_ik(const arm::Arm& arm, const arm::Pose& pose,
   return {joints, false, iterations};
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

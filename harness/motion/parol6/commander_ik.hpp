@@ -4,7 +4,7 @@
 #include "harness/arm/pose.hpp"
 #include "harness/arm/spherical_wrist.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// What the commander's inverse kinematics ends with. Not a good one: it knows no limits, does not
 /// start again, mixes metres with radians and may stop 10 um beside the pose. Lines of the
@@ -20,4 +20,4 @@ inline constexpr int kCommanderIkIterations = 60;
                                              const arm::SixJoints& seed,
                                              int iterations = kCommanderIkIterations) noexcept;
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

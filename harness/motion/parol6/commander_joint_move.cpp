@@ -10,7 +10,7 @@
 #include "harness/motion/profile.hpp"
 
 // The order of operations is the shipped program's: fractions of a step are cut off.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 tl::unexpected<Refusal> impossible(double duration) {
@@ -199,4 +199,4 @@ tl::expected<Plan, Refusal> plan_commander_joints(const CommanderTarget& target,
   return plan;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -12,7 +12,7 @@
 #include "harness/motion/profile.hpp"
 
 // The order of operations is the shipped program's: fractions of a step are cut off.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 /// What the commander takes away from telemetry before a line, radians.
@@ -100,4 +100,4 @@ tl::expected<Plan, Refusal> plan_commander_line(const LineTarget& target, const 
   return plan;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -14,7 +14,7 @@
 
 /// Angles and steps as the host programs convert them, operation by operation: where a fraction is
 /// cut off, the last bit of a double decides about a step.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 inline constexpr std::array<double, kJointCount> kReductions{6.4, 20.0, 20.0 * 38.0 / 42.0,
                                                              4.0, 4.0,  10.0};
@@ -65,4 +65,4 @@ inline constexpr double kMostSteps = 8'388'607;
   return cut_off(std::nearbyint(steps));
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -9,7 +9,7 @@
 #include "harness/motion/parol6/joint_move.hpp"
 #include "harness/motion/profile.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 // Percent; the commander's for MoveJoint.
@@ -144,4 +144,4 @@ tl::expected<Plan, Refusal> plan_documented_joints(const arm::SixJoints& target,
   return planned_in_time(way, *timing.duration, law, tracking, limits);
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

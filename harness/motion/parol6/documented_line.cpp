@@ -14,7 +14,7 @@
 #include "harness/motion/pose_line.hpp"
 #include "harness/motion/profile.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 /// Radians in a tick.
@@ -160,4 +160,4 @@ tl::expected<Plan, Refusal> plan_documented_line(const LineTarget& target, const
   return plan;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -7,7 +7,7 @@
 #include "harness/motion/parol6/planner.hpp"
 
 /// Moves in which the joints lead, by either rules. `plan` in planner.hpp is their caller.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// To the step nearest to each angle (radians). `defaults` has what `timing` may leave out.
 [[nodiscard]] tl::expected<Plan, Refusal> plan_documented_joints(const arm::SixJoints& target,
@@ -29,4 +29,4 @@ struct CommanderTarget {
                                                                 Tracking tracking,
                                                                 LimitCheck limits);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

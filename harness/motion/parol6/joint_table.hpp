@@ -7,7 +7,7 @@
 #include "harness/core/quantity.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// What a joint of PAROL6 may do, as the vendor's host programs have it.
 struct JointRange {
@@ -54,4 +54,4 @@ inline constexpr double kLongestMove = 3600;
   return steps;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -7,7 +7,7 @@
 #include "harness/motion/parol6/planner.hpp"
 
 /// Moves in which the tool leads, by either rules. `plan` in planner.hpp is their caller.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// What a line takes if its command does not say it: the commander's figure, seconds.
 inline constexpr double kDefaultLineDuration = 3.6;
@@ -37,4 +37,4 @@ struct LineTarget {
                                                               const Timing& timing,
                                                               Tracking tracking);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -8,7 +8,7 @@
 #include "harness/motion/parol6/joint_move.hpp"
 #include "harness/motion/parol6/line.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 using Planned = tl::expected<Plan, Refusal>;
@@ -90,4 +90,4 @@ Planned plan(const Move& move, const JointSteps& start, const PlannerSettings& s
   return plan_line(move, start, settings);
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

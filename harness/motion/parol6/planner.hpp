@@ -16,7 +16,7 @@
 /// Moves of a PAROL6 as its host programs plan them: from a command and where the joints are to the
 /// set-points of every frame. The whole move is computed and checked before its first frame leaves.
 /// No I/O.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// Whose planning.
 enum class Rules : std::uint8_t {
@@ -145,4 +145,4 @@ struct Plan {
 [[nodiscard]] tl::expected<Plan, Refusal> plan(const Move& move, const JointSteps& start,
                                                const PlannerSettings& settings = {});
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

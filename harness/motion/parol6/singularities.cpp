@@ -6,7 +6,7 @@
 #include "harness/arm/jacobian.hpp"
 #include "harness/motion/parol6/joint_table.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 std::optional<SingularityNote::Kind> singularity_near(const arm::SphericalWrist& solver,
                                                       const arm::SixJoints& joints) noexcept {
@@ -50,4 +50,4 @@ std::vector<SingularityNote> singularities_on(const arm::Arm& arm,
   return notes;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -9,7 +9,7 @@
 #include "harness/arm/spherical_wrist.hpp"
 #include "harness/motion/parol6/planner.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// The singularity that a posture is near to, if any: the wrist's centre within 20 mm of the base's
 /// axis, the elbow or the wrist within 5 degrees of straight.
@@ -21,4 +21,4 @@ namespace armjig::parol6 {
                                                             const arm::SphericalWrist& solver,
                                                             std::span<const arm::SixJoints> path);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

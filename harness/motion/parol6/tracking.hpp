@@ -4,7 +4,7 @@
 #include "harness/core/quantity.hpp"
 #include "harness/motion/parol6/planner.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 
 /// The speed at which the board runs a joint until the next frame, told `position` and `speed` and
 /// being at `now` (docs/spec/parol6.md, "Go to"). Speeds only: the speed. Both: the mean of the
@@ -18,4 +18,4 @@ namespace armjig::parol6 {
   return StepsPerSecond{static_cast<std::int32_t>((speed.value + closing) / 2)};
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

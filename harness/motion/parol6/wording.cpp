@@ -4,7 +4,7 @@
 #include "harness/motion/parol6/conversion.hpp"
 #include "harness/motion/parol6/planner.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 std::string name_of(const Refusal& refusal) {
@@ -66,4 +66,4 @@ std::string describe(const SingularityNote& note) {
       to_degrees(note.joints[5]));
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/capture/trace.hpp"
 
+#include "harness/wire/parol6/dissector.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -301,8 +303,8 @@ TEST(DescribedDifference, NamesLineTimeBytesAndTheDecodedField) {
   namespace vectors = parol6::vectors;
   auto other = vectors::kRestTelemetry;
   other[6] = std::byte{0x03};
-  const auto text =
-      describe({event(17, 5ms, vectors::kRestTelemetry), event(0, 5ms, other)}, trace_of("parol6"));
+  const auto text = describe({event(17, 5ms, vectors::kRestTelemetry), event(0, 5ms, other)},
+                             trace_of("parol6"), parol6::make_dissector);
   EXPECT_THAT(text, StartsWith("  home.jsonl:17: differs at 5000 us\n"));
   EXPECT_THAT(text, HasSubstr("expected       5000 us from_device FF FF FF 38 00 28 02"));
   EXPECT_THAT(text, HasSubstr("actual         5000 us from_device FF FF FF 38 00 28 03"));
@@ -310,15 +312,17 @@ TEST(DescribedDifference, NamesLineTimeBytesAndTheDecodedField) {
 }
 
 TEST(DescribedDifference, NamesTheTimeThatDiffers) {
-  const auto text =
-      describe({event(17, 5ms, hex("01")), event(0, 5020us, hex("01"))}, trace_of("parol6"));
+  const auto text = describe({event(17, 5ms, hex("01")), event(0, 5020us, hex("01"))},
+                             trace_of("parol6"), parol6::make_dissector);
   EXPECT_THAT(text, HasSubstr("  time: expected 5000 us, got 5020 us\n"));
 }
 
 TEST(DescribedDifference, SaysThatNothingCame) {
-  EXPECT_THAT(describe({event(17, 5ms, hex("01")), std::nullopt}, trace_of("parol6")),
+  EXPECT_THAT(describe({event(17, 5ms, hex("01")), std::nullopt}, trace_of("parol6"),
+                       parol6::make_dissector),
               HasSubstr("actual   nothing\n"));
-  const auto extra = describe({std::nullopt, event(0, 5ms, hex("01"))}, trace_of("parol6"));
+  const auto extra = describe({std::nullopt, event(0, 5ms, hex("01"))}, trace_of("parol6"),
+                              parol6::make_dissector);
   EXPECT_THAT(extra, StartsWith("  home.jsonl: behind the last recorded event\n"));
   EXPECT_THAT(extra, HasSubstr("expected nothing\n"));
 }
@@ -327,13 +331,14 @@ TEST(DescribedDifference, ShowsTheIdentifierOfACanFrame) {
   auto can = event(17, 5ms, hex("78 1E"));
   can.dir = "can_from_device";
   can.id = 0x7A;
-  EXPECT_THAT(describe({can, std::nullopt}, trace_of("parol6")),
+  EXPECT_THAT(describe({can, std::nullopt}, trace_of("parol6"), parol6::make_dissector),
               HasSubstr("5000 us can_from_device id 07A 78 1E\n"));
 }
 
 TEST(DescribedDifference, ShowsBytesOfADeviceThatNobodyCanDissect) {
-  EXPECT_THAT(describe({event(17, 5ms, hex("01")), event(0, 5ms, hex("02"))}, trace_of("toaster")),
-              HasSubstr("actual         5000 us from_device 02\n"));
+  EXPECT_THAT(
+      describe({event(17, 5ms, hex("01")), event(0, 5ms, hex("02"))}, trace_of("toaster"), nullptr),
+      HasSubstr("actual         5000 us from_device 02\n"));
 }
 
 }  // namespace

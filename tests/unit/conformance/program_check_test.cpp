@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/parol6/host/check.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "harness/capture/trace.hpp"
 
@@ -16,12 +17,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const ProgramCheckEntry& parol6_entry() {
-  return *std::ranges::find(program_checks(), "parol6", &ProgramCheckEntry::device);
-}
+ProgramCheckEntry parol6_entry() { return parol6::programs::program_check(); }
 
 std::unique_ptr<HostedStream> watched_arm(ProgramCheck& check) {
-  return check.watch(make_hosted(parol6::Arm{}));
+  return check.watch(make_hosted(parol6::emulation::Arm{}));
 }
 
 parol6::CommandFrame idle_with_gripper(std::uint8_t id) {

@@ -24,10 +24,12 @@ class NumberBench final : public Bench {
     if (start != kUnreachable) return;
     leaves_beyond_open ? leave_open("no hand") : fail("the state", "another one");
   }
-  void measure_noise() override { ++measured; }
-  [[nodiscard]] Duration noise() const override { return 3us; }
+  void measure_noise() override {
+    ++measured;
+    hear_noise(3us);
+  }
+  using Bench::lose_link;
   [[nodiscard]] Instant now() const override { return at(1s * calls); }
-  [[nodiscard]] const std::optional<Error>& error() const override { return link_error; }
   [[nodiscard]] std::string last_exchange() const override { return "the last exchange\n"; }
 
   static constexpr std::size_t kUnreachable = 2;
@@ -35,7 +37,6 @@ class NumberBench final : public Bench {
   std::vector<std::size_t> visited;
   std::vector<std::string> ran;
   std::vector<std::uint32_t> randoms;
-  std::optional<Error> link_error;
   int calls = 0;
   int measured = 0;
   bool is_dead = false;
@@ -72,7 +73,7 @@ void dies(Bench& bench) {
   number(bench).is_dead = true;
   bench.fail_by_silence("an answer", "silence");
 }
-void loses_link(Bench& bench) { number(bench).link_error = Error{ErrorCode::kDisconnected, 0}; }
+void loses_link(Bench& bench) { number(bench).lose_link({ErrorCode::kDisconnected, 0}); }
 void is_quiet_once(Bench& bench) { bench.fail_by_silence("an answer", "silence"); }
 void skips(Bench& bench) { bench.skip("no hand"); }
 void breaks_document(Bench& bench) { bench.fail("what the document says", "something else"); }
@@ -115,7 +116,7 @@ constexpr Case kCases[] = {
 constexpr StartState kStarts[] = {
     {"zero", Hazard::kObserve}, {"one", Hazard::kObserve}, {"beyond reach", Hazard::kObserve}};
 constexpr Chapter kChapters[] = {{"Numbers", kRequirements, kCases}};
-constexpr Suite kSuite{"n", "7", kChapters, kStarts, nullptr};
+constexpr Suite kSuite{"n", "7", kChapters, kStarts};
 
 Report run(NumberBench& bench, const std::string& filter, RunOptions options = {}) {
   options.selection.filter = filter;

@@ -10,23 +10,22 @@
 #include <string>
 #include <vector>
 
+#include "conformance/parol6/suite.hpp"
 #include "conformance/run.hpp"
 #include "conformance/selection.hpp"
 #include "conformance/suite.hpp"
-#include "harness/rig/target.hpp"
+#include "tests/unit/support/suites.hpp"
 
 namespace armjig {
 namespace {
 
-const Suite& suite_of(std::string_view device) {
-  return *std::ranges::find(suites(), device, &Suite::device);
-}
+using test::demo_suite;
+using test::parol6_suite;
 
-Report run(std::string_view device, const std::string& target, RunOptions options = {}) {
-  const auto& suite = suite_of(device);
-  const auto bench = suite.open({.target = *parse_target(target)});
+Report run(const test::TestedSuite& device, const std::string& target, RunOptions options = {}) {
+  const auto bench = device.bench(target);
   options.permissions = Permissions::all();
-  return run_suite(suite, **bench, options, [](const ReportRow&) {});
+  return run_suite(device.suite, *bench, options, [](const ReportRow&) {});
 }
 
 std::vector<std::string> but_for(const Report& report, Verdict verdict) {
@@ -38,7 +37,7 @@ std::vector<std::string> but_for(const Report& report, Verdict verdict) {
 }
 
 TEST(Suites, HaveUniqueNamesAndACaseForEachRequirementOrAReason) {
-  for (const auto& suite : suites()) {
+  for (const auto& [suite, mutants, open] : test::all_suites()) {
     std::set<std::string> ids;
     std::set<std::string> texts;
     std::set<std::string> cases;
@@ -66,7 +65,7 @@ TEST(Suites, HaveUniqueNamesAndACaseForEachRequirementOrAReason) {
 }
 
 TEST(Suites, SayForDifferencesWhatTheOtherProfileHasInstead) {
-  for (const auto& suite : suites()) {
+  for (const auto& [suite, mutants, open] : test::all_suites()) {
     for (const auto& chapter : suite.chapters) {
       for (const auto& requirement : chapter.requirements) {
         if (requirement.profiles == Profiles::kDocumented) {
@@ -94,31 +93,31 @@ std::size_t count(const Suite& suite, Role role) {
 }
 
 TEST(Parol6Suite, HasAtLeast150RequirementsForTheDeviceAnd25ForTheHost) {
-  EXPECT_GE(count(suite_of("parol6"), Role::kDevice), 150U);
-  EXPECT_GE(count(suite_of("parol6"), Role::kHost), 25U);
+  EXPECT_GE(count(parol6::conformance::suite(), Role::kDevice), 150U);
+  EXPECT_GE(count(parol6::conformance::suite(), Role::kHost), 25U);
 }
 
 TEST(Parol6Suite, PassesOnTheEmulatedFirmware) {
-  EXPECT_THAT(but_for(run("parol6", "emulated:"), Verdict::kPass), testing::IsEmpty());
+  EXPECT_THAT(but_for(run(parol6_suite(), "emulated:"), Verdict::kPass), testing::IsEmpty());
 }
 
 TEST(Parol6Suite, PassesOnTheFirmwareWithALongerLoop) {
   for (const auto* target : {"emulated:?pass-us=50", "emulated:?pass-us=250"}) {
-    EXPECT_THAT(but_for(run("parol6", target), Verdict::kPass), testing::IsEmpty()) << target;
+    EXPECT_THAT(but_for(run(parol6_suite(), target), Verdict::kPass), testing::IsEmpty()) << target;
   }
 }
 
 TEST(Parol6Suite, PassesOnTheDocumentedBoard) {
-  EXPECT_THAT(
-      but_for(run("parol6", "emulated:?profile=documented", {.profile = Profile::kDocumented}),
-              Verdict::kPass),
-      testing::IsEmpty());
+  EXPECT_THAT(but_for(run(parol6_suite(), "emulated:?profile=documented",
+                          {.profile = Profile::kDocumented}),
+                      Verdict::kPass),
+              testing::IsEmpty());
 }
 
 TEST(Parol6Suite, FindsExactlyTheMappedDeviationsOfTheFirmwareFromTheDocument) {
-  const auto report = run("parol6", "emulated:", {.profile = Profile::kDocumented});
+  const auto report = run(parol6_suite(), "emulated:", {.profile = Profile::kDocumented});
   for (const auto& row : report.rows) {
-    const auto& requirement = *find_requirement(suite_of("parol6"), row.requirement);
+    const auto& requirement = *find_requirement(parol6::conformance::suite(), row.requirement);
     const auto wanted =
         requirement.profiles == Profiles::kDocumented ? Verdict::kDeviation : Verdict::kPass;
     EXPECT_EQ(row.verdict, wanted) << to_text(row);
@@ -126,16 +125,17 @@ TEST(Parol6Suite, FindsExactlyTheMappedDeviationsOfTheFirmwareFromTheDocument) {
 }
 
 /// Runs every case of the suite once, in a random order, on one and the same device.
-std::vector<std::string> findings_in_any_order(const Suite& suite, std::uint32_t seed) {
-  auto cases = select(suite, Profile::kFirmware, {});
+std::vector<std::string> findings_in_any_order(const test::TestedSuite& device,
+                                               std::uint32_t seed) {
+  auto cases = select(device.suite, Profile::kFirmware, {});
   std::ranges::shuffle(cases, std::mt19937{seed});
-  const auto bench = suite.open({.target = *parse_target("emulated:")});
+  const auto bench = device.bench("emulated:");
   std::vector<std::string> findings;
   for (const auto* one : cases) {
-    (*bench)->begin(Profile::kFirmware, seed);
-    (*bench)->bring_to(one->start);
-    if (!(*bench)->is_over()) one->run(**bench);
-    const auto& judgement = (*bench)->judgement();
+    bench->begin(Profile::kFirmware, seed);
+    bench->bring_to(one->start);
+    if (!bench->is_over()) one->run(*bench);
+    const auto& judgement = bench->judgement();
     if (judgement.verdict == Verdict::kPass) continue;
     findings.push_back(name_of(*one) + ": " + judgement.expected + ", but " + judgement.actual);
   }
@@ -145,17 +145,17 @@ std::vector<std::string> findings_in_any_order(const Suite& suite, std::uint32_t
 // Filters, shards and repetitions all change what ran before a case.
 TEST(Parol6Suite, FindsTheSameInWhateverOrderItsCasesRun) {
   for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
-    EXPECT_THAT(findings_in_any_order(suite_of("parol6"), seed), testing::IsEmpty());
+    EXPECT_THAT(findings_in_any_order(parol6_suite(), seed), testing::IsEmpty());
   }
 }
 
 TEST(Parol6Suite, GivesTheSameReportForTheSameSeed) {
-  const auto once = to_json(run("parol6", "emulated:", {.seed = 3}));
-  EXPECT_EQ(once, to_json(run("parol6", "emulated:", {.seed = 3})));
+  const auto once = to_json(run(parol6_suite(), "emulated:", {.seed = 3}));
+  EXPECT_EQ(once, to_json(run(parol6_suite(), "emulated:", {.seed = 3})));
 }
 
 TEST(DemoSuite, PassesOnTheEmulatedDevice) {
-  EXPECT_THAT(but_for(run("demo", "emulated:"), Verdict::kPass), testing::IsEmpty());
+  EXPECT_THAT(but_for(run(demo_suite(), "emulated:"), Verdict::kPass), testing::IsEmpty());
 }
 
 }  // namespace

@@ -7,9 +7,10 @@
 #include <regex>
 #include <string>
 
-#include "conformance/parol6/host/checker.hpp"
+#include "conformance/parol6/chapters.hpp"
+#include "conformance/parol6/host/check.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 namespace {
 
 /// The page with every run of blanks and line ends as one blank.
@@ -31,4 +32,4 @@ TEST(HostProgramsSection, HasTheSentenceAndTheSourceOfEveryRequirement) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

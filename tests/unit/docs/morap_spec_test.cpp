@@ -11,7 +11,7 @@
 
 #include "conformance/morap/suite.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
 /// The page with every run of blanks and line ends as one blank.
@@ -48,4 +48,4 @@ TEST(MorapPage, HasTheSentencesOfTheCatalogueAndNoOthers) {
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -13,9 +13,10 @@
 #include "harness/drive/parol6/drive_loop.hpp"
 #include "harness/link/memory_stream.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 using Ending = Activity::Ending;
 using ::testing::HasSubstr;
@@ -251,4 +252,4 @@ TEST(Activity, WaitingTakesItsTime) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

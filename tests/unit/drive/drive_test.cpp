@@ -12,9 +12,10 @@
 #include "harness/link/memory_stream.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 using Kind = DriveEvent::Kind;
 
@@ -244,4 +245,4 @@ TEST(Drive, EmergencyStopAtTwoHundredRandomMomentsLatchesAndNothingMovesAfterEna
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

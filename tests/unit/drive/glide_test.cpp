@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
 using namespace std::chrono_literals;
@@ -63,4 +63,4 @@ TEST(Glide, WithoutAWayToGoIsOverAtOnce) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

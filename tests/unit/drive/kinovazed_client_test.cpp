@@ -4,22 +4,21 @@
 
 #include <algorithm>
 
-#include "emulators/kinovazed/single_client.hpp"
+#include "emulators/kinovazed/server.hpp"
 #include "harness/drive/kinovazed/client.hpp"
 #include "harness/link/memory_session.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::drive {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 using Kind = DriveEvent::Kind;
 
 /// A client and an emulated server on virtual time.
 struct Jig {
   explicit Jig(ServerOptions server = {}, DriveOptions drive = {})
-      : Jig{SingleClient{Server{ArmPort{BenchArm{}}, std::move(server)}}, drive} {}
-  Jig(SingleClient<Server> device, DriveOptions drive)
-      : port{device, device.start()}, client{port, drive} {}
+      : port{Server{ArmPort{BenchArm{}}, std::move(server)}}, client{port, drive} {}
 
   /// Connected, initialised, idle.
   Jig& start() {
@@ -40,10 +39,10 @@ struct Jig {
   bool saw(Kind kind) const {
     return std::ranges::find(events, kind, &DriveEvent::kind) != events.end();
   }
-  Server& server() { return port.device().server(); }
+  Server& server() { return port.device(); }
   State state() { return server().state(); }
 
-  MemorySession<SingleClient<Server>> port;
+  MemorySession<Server> port;
   Client client;
   std::vector<DriveEvent> events;
 };
@@ -177,7 +176,7 @@ TEST(KinovaClient, LetsTheStickGoWhenNobodyRenewsIt) {
 }
 
 TEST(KinovaClient, LetsTheStickGoBeforeItLeaves) {
-  MemorySession<SingleClient<Server>> port{SingleClient{Server{ArmPort{BenchArm{}}}}, at(60ms)};
+  MemorySession<Server> port{Server{ArmPort{BenchArm{}}}};
   {
     Client client{port, {.stick_watchdog = 0s}};
     ASSERT_TRUE(client.connect(client.now() + 2s));
@@ -188,9 +187,8 @@ TEST(KinovaClient, LetsTheStickGoBeforeItLeaves) {
   }
   const auto pose_in = [&port](Duration wait) {
     Pose pose;
-    port.device().server().touch(port.now() + wait, [&pose](ArmPort& arm) {
-      pose = std::get<BenchArm>(arm.plant()).pose();
-    });
+    port.device().touch(port.now() + wait,
+                        [&pose](ArmPort& arm) { pose = std::get<BenchArm>(arm.plant()).pose(); });
     return pose;
   };
   EXPECT_EQ(pose_in(1s), pose_in(2s));
@@ -226,4 +224,4 @@ TEST(KinovaClient, SaysThatADeadServerRefusesConnections) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::drive

@@ -7,7 +7,7 @@
 
 #include "tests/unit/report/validity.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
 using namespace std::chrono_literals;
@@ -56,4 +56,4 @@ TEST(TelemetryJson, IsValidWhateverTheBoardSends) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -13,9 +13,10 @@
 #include "harness/link/memory_stream.hpp"
 #include "harness/motion/parol6/conversion.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::drive {
 namespace {
 
+using namespace planning;
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using Ending = Activity::Ending;
@@ -50,7 +51,7 @@ class Jig {
     return forward(arm::parol6_commander(), radians_of(drive.telemetry()->position));
   }
 
-  MemoryStream<Arm> port{Arm{}};
+  MemoryStream<emulation::Arm> port{emulation::Arm{}};
   Drive drive;
   DriveLoop loop{port, drive};
 };
@@ -109,4 +110,4 @@ TEST(ToolJog, NeedsAnArmThatWasHomed) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::drive

@@ -5,16 +5,17 @@
 #include <cmath>
 #include <string>
 
-#include "emulators/host/kinovazed_options.hpp"
 #include "emulators/kinovazed/arm_port.hpp"
+#include "emulators/kinovazed/options.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::host {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 
 DefectiveServer running_server(const DeviceOptions& options = {}) {
-  auto server = *make_server(options, "test");
+  auto server = *make(options, "test");
   server.advance_to(at(1s));
   return server;
 }
@@ -71,4 +72,4 @@ TEST(KinovazedInputs, HaveNoJoystickOnTheArmOfTheRecordings) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::host

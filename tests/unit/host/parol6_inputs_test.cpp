@@ -4,17 +4,18 @@
 
 #include <string>
 
-#include "emulators/host/devices.hpp"
+#include "emulators/memory/hosted.hpp"
+#include "emulators/parol6/options.hpp"
 #include "harness/wire/parol6/frame.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::host {
 namespace {
 
 using namespace std::chrono_literals;
 
 std::unique_ptr<HostedStream> arm(const DeviceOptions& options = {}) {
-  return std::move(make_hosted_device("parol6", options).value());
+  return make_hosted(emulation::make(options, "test").value());
 }
 
 /// What the board says at `time`.
@@ -29,7 +30,7 @@ TelemetryFrame asked(HostedStream& device, Duration time) {
 
 TEST(Parol6Inputs, AreAllKnown) {
   const auto device = arm();
-  for (const auto& input : hosted_device("parol6").inputs()) {
+  for (const auto& input : device->inputs()) {
     std::string name{input.name};
     if (!name.ends_with('N')) {
       EXPECT_TRUE(device->set_input(at(1s), name, 1)) << name;
@@ -73,4 +74,4 @@ TEST(Parol6Inputs, ReachABoardWithFaultsToo) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::host

@@ -34,9 +34,9 @@ constexpr BusAddress kNobody{0x13};
 
 TEST(I2cTinyUsb, CarriesWhatADriveSaysAndHears) {
   const Plugged plugged;
-  morap::Master master{*plugged.port};
-  morap::Joint joint{master, kNode};
-  EXPECT_EQ(joint.calibrate(morap::Angle{1.0F}), morap::BusCode::kOk);
+  morap::drive::Master master{*plugged.port};
+  morap::drive::Joint joint{master, kNode};
+  EXPECT_EQ(joint.calibrate(morap::drive::Angle{1.0F}), morap::drive::BusCode::kOk);
   // captures/morap: 1 rad is 18840 counts, which read as 0.9999935
   EXPECT_FLOAT_EQ(joint.angle().value.value, 0.9999935F);
   EXPECT_EQ(joint.own_address().value, 0x12);
@@ -71,8 +71,8 @@ TEST(I2cTinyUsb, SaysThatItWasPulledOut) {
   const Plugged plugged{{.trouble = ErrorCode::kDisconnected}};
   const auto poke = write_to(kNode, {});
   EXPECT_EQ(plugged.port->transfer({&poke, 1}).error().code, ErrorCode::kDisconnected);
-  morap::Master master{*plugged.port};
-  EXPECT_EQ(master.poke(kNode), morap::BusCode::kGone);
+  morap::drive::Master master{*plugged.port};
+  EXPECT_EQ(master.poke(kNode), morap::drive::BusCode::kGone);
 }
 
 TEST(I2cTinyUsb, RefusesADeviceThatIsNoSuchAdapter) {

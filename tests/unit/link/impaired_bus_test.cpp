@@ -4,14 +4,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "emulators/demo/demo.hpp"
-#include "harness/link/memory_bus.hpp"
+#include "emulators/i2c/bus.hpp"
+#include "harness/core/hex.hpp"
+#include "harness/link/emulated_bus_port.hpp"
+#include "harness/link/transaction_bus.hpp"
 
 namespace armjig {
 namespace {
@@ -21,7 +27,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using Access = BusPort::Access;
 
-constexpr BusAddress kDemo{demo::BusDevice::kAddress};
+constexpr BusAddress kDemo{demo::emulation::BusDevice::kAddress};
 
 /// A device that notes what is written and reads as 1, 2, 3, ...
 struct Recorder {
@@ -29,7 +35,7 @@ struct Recorder {
   int reads = 0;
 
   [[nodiscard]] bool acknowledges(std::uint8_t address) const {
-    return address == demo::BusDevice::kAddress;
+    return address == demo::emulation::BusDevice::kAddress;
   }
   [[nodiscard]] bool write(Instant /*time*/, std::byte byte) {
     written.push_back(std::to_integer<int>(byte));
@@ -38,11 +44,17 @@ struct Recorder {
   [[nodiscard]] std::byte read(Instant /*time*/) { return static_cast<std::byte>(++reads); }
 };
 
+std::unique_ptr<EmulatedBusPort<i2c::Bus>> make_bus() {
+  i2c::Bus bus;
+  bus.attach(Recorder{});
+  return std::make_unique<EmulatedBusPort<i2c::Bus>>(std::move(bus));
+}
+
 struct Bus {
   explicit Bus(std::string_view text) {
     const auto impairment = parse_impairment(text);
-    auto inner = std::make_unique<MemoryBus<Recorder>>(Recorder{});
-    device = &inner->device();
+    auto inner = make_bus();
+    device = &inner->bus().device<Recorder>(0);
     auto made = ImpairedBus::make(std::move(inner), impairment.value());
     if (!made) ADD_FAILURE() << describe(made.error());
     port = std::move(made.value());
@@ -131,11 +143,70 @@ TEST(ImpairedBus, FindsNobodyAfterADisconnect) {
   EXPECT_EQ(bus.device->reads, 1);
 }
 
+/// A bus as Linux has it; notes what reaches it, and reads as ones and zeros.
+class Adapter final : public TransactionBus {
+ public:
+  explicit Adapter(std::vector<std::string>& notes) : notes_{notes} {}
+  Result<Transfer> transfer(std::span<const BusMessage> messages) override {
+    for (const auto& message : messages) {
+      std::ranges::fill(message.read, std::byte{0xAA});
+      notes_.push_back(to_hex(std::array{head_of(message)}) + ":" + to_hex(message.write));
+    }
+    return Transfer::kDone;
+  }
+  void wait_until(Instant time) override { now_ = std::max(now_, time); }
+  [[nodiscard]] Instant now() const override { return now_; }
+
+ private:
+  std::vector<std::string>& notes_;
+  Instant now_{};
+};
+
+class ImpairedAdapter : public testing::Test {
+ protected:
+  /// Writes two bytes and reads two.
+  Result<Transfer> transfer(std::string_view impairment) {
+    auto inner = std::make_unique<Adapter>(notes);
+    port = std::move(
+        ImpairedBus::make(std::move(inner), parse_impairment(impairment).value()).value());
+    constexpr std::array kTwo{std::byte{1}, std::byte{2}};
+    return port->transfer(std::array{write_to(kDemo, kTwo), read_from(kDemo, value)});
+  }
+  std::vector<std::string> notes;
+  std::array<std::byte, 2> value{};
+  std::unique_ptr<ImpairedBus> port;
+};
+
+TEST_F(ImpairedAdapter, GetsATransactionInOnePiece) {
+  EXPECT_EQ(transfer("out.delay=1ms,in.delay=2ms"), Transfer::kDone);
+  EXPECT_FALSE(port->has_operations());
+  EXPECT_THAT(notes, ElementsAre("54:0102", "55:"));
+  EXPECT_THAT(value, ElementsAre(std::byte{0xAA}, std::byte{0xAA}));
+  EXPECT_EQ(port->now(), at(8ms));  // four bytes out, two in
+}
+
+TEST_F(ImpairedAdapter, GetsNothingBehindAMissedAddress) {
+  EXPECT_EQ(transfer("out.loss=100%"), Transfer::kAddressRefused);
+  EXPECT_THAT(notes, IsEmpty());
+}
+
+TEST_F(ImpairedAdapter, GetsWhatCameBeforeALostByte) {
+  EXPECT_EQ(transfer("out.disconnect-after=2"), Transfer::kByteRefused);
+  EXPECT_THAT(notes, ElementsAre("54:01"));
+  EXPECT_EQ(port->transfer({}), Transfer::kDone) << "of nothing, nothing is lost";
+}
+
+TEST_F(ImpairedAdapter, ReadsLostBytesAsAnIdleLineAndFlippedOnesFlipped) {
+  EXPECT_EQ(transfer("in.loss=100%"), Transfer::kDone);
+  EXPECT_THAT(value, ElementsAre(std::byte{0xFF}, std::byte{0xFF}));
+  EXPECT_EQ(transfer("in.bit-errors=100%"), Transfer::kDone);
+  EXPECT_THAT(value, ElementsAre(std::byte{0x55}, std::byte{0x55}));
+}
+
 TEST(ImpairedBus, RefusesWhatABusCannotHave) {
   const auto impairment = parse_impairment("loss=1%,out.split=random,double=2%,seed=9");
   ASSERT_TRUE(impairment);
-  const auto made =
-      ImpairedBus::make(std::make_unique<MemoryBus<Recorder>>(Recorder{}), *impairment);
+  const auto made = ImpairedBus::make(make_bus(), *impairment);
   ASSERT_FALSE(made);
   EXPECT_EQ(describe(made.error()),
             "impairment 'double=2%,out.split=random': not supported here; an I2C bus can have "

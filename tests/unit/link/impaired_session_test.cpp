@@ -216,7 +216,8 @@ TEST_F(ImpairedSessionTest, RefusesASecondConnectionAndKeepsTheFirst) {
 TEST(ImpairedSession, SpeaksToTheDemoServer) {
   const auto impairment = parse_impairment("in.split=1,in.bandwidth=1000");
   ASSERT_TRUE(impairment);
-  ImpairedSession port{std::make_unique<MemorySession<demo::SessionDevice>>(demo::SessionDevice{}),
+  ImpairedSession port{std::make_unique<MemorySession<demo::emulation::SessionDevice>>(
+                           demo::emulation::SessionDevice{}),
                        *impairment};
   ASSERT_TRUE(port.connect(at(1s)));
   ByteVector greeting;

@@ -135,7 +135,7 @@ class ScriptedStream final : public StreamPort {
     return bytes.size();
   }
   [[nodiscard]] Instant now() const override { return now_; }
-  [[nodiscard]] std::optional<int> descriptor() const override { return 7; }
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override { return Lifeline{7, {}}; }
 
   std::vector<Stamped> written;
   std::optional<Error> write_error;
@@ -148,7 +148,8 @@ class ScriptedStream final : public StreamPort {
 };
 
 TEST(ImpairedStream, WithoutDefectsIsThePortItself) {
-  ImpairedStream port{std::make_unique<MemoryStream<demo::StreamDevice>>(demo::StreamDevice{}),
+  ImpairedStream port{std::make_unique<MemoryStream<demo::emulation::StreamDevice>>(
+                          demo::emulation::StreamDevice{}),
                       parsed("seed=1")};
   write(port, "A5 73 8C");  // demo: start
   const auto reply = read(port, at(10ms));
@@ -158,7 +159,8 @@ TEST(ImpairedStream, WithoutDefectsIsThePortItself) {
 }
 
 TEST(ImpairedStream, DelaysBothWaysOnVirtualTime) {
-  ImpairedStream port{std::make_unique<MemoryStream<demo::StreamDevice>>(demo::StreamDevice{}),
+  ImpairedStream port{std::make_unique<MemoryStream<demo::emulation::StreamDevice>>(
+                          demo::emulation::StreamDevice{}),
                       parsed("out.delay=2ms,in.delay=3ms")};
   write(port, "A5 73 8C");
   const auto reply = read(port, at(10ms));
@@ -264,7 +266,8 @@ TEST(ImpairedStream, EndsAReadAtItsDeadlineThoughADelayedFloodComesIn) {
 }
 
 TEST(ImpairedStream, CountsEveryFrameThatItLoses) {
-  ImpairedStream port{std::make_unique<MemoryStream<demo::StreamDevice>>(demo::StreamDevice{}),
+  ImpairedStream port{std::make_unique<MemoryStream<demo::emulation::StreamDevice>>(
+                          demo::emulation::StreamDevice{}),
                       parsed("loss=10%,seed=5")};
   int answered = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -367,7 +370,7 @@ TEST(ImpairedStream, PassesOtherErrorsOfTheInnerPortOnAndLives) {
 TEST(ImpairedStream, HasTheDescriptorOfTheInnerPort) {
   const ImpairedStream port{std::make_unique<ScriptedStream>(std::deque<Stamped>{}, Error{}),
                             parsed("seed=1")};
-  EXPECT_EQ(port.descriptor(), 7);
+  EXPECT_EQ(port.lifeline()->descriptor, 7);
 }
 
 TEST(ImpairedStream, DoesNotSpin) {

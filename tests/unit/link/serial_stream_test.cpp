@@ -27,12 +27,21 @@ TEST(UsbId, IsWrittenAsItIsRead) {
 TEST(SerialAddress, HasAPathAndTheUsualSpeed) {
   const auto address = parse_serial_address("/dev/ttyACM0").value();
   EXPECT_EQ(address.path, "/dev/ttyACM0");
-  EXPECT_EQ(address.baud, 3'000'000U);
+  EXPECT_EQ(address.line.baud, 3'000'000U);
 }
 
 TEST(SerialAddress, HasTheSpeedBehindTheLastComma) {
-  EXPECT_EQ(parse_serial_address("/dev/ttyUSB1,9600"), (SerialAddress{"/dev/ttyUSB1", 9600}));
-  EXPECT_EQ(parse_serial_address("/dev/a,b,115200"), (SerialAddress{"/dev/a,b", 115'200}));
+  EXPECT_EQ(parse_serial_address("/dev/ttyUSB1,9600"),
+            (SerialAddress{"/dev/ttyUSB1", {.baud = 9600}}));
+  EXPECT_EQ(parse_serial_address("/dev/a,b,115200"),
+            (SerialAddress{"/dev/a,b", {.baud = 115'200}}));
+}
+
+TEST(SerialAddress, HasTheLineOfTheDeviceButTheSpeedThatIsWritten) {
+  const SerialLine line{.baud = 1200, .parity = Parity::kEven, .stop_bits = 2};
+  EXPECT_EQ(parse_serial_address("/dev/ttyS0", line), (SerialAddress{"/dev/ttyS0", line}));
+  EXPECT_EQ(parse_serial_address("/dev/ttyS0,9600", line)->line,
+            (SerialLine{.baud = 9600, .parity = Parity::kEven, .stop_bits = 2}));
 }
 
 TEST(SerialStream, APseudoTerminalIsSentToItsOwnScheme) {

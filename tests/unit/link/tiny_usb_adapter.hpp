@@ -32,7 +32,7 @@ class TinyUsbAdapter final : public UsbControl {
 
   TinyUsbAdapter(Behaviour behaviour, std::shared_ptr<Log> log)
       : behaviour_{behaviour}, log_{std::move(log)} {
-    bus_.attach(morap::Node{{.eeprom = morap::dcx22l()}});
+    bus_.attach(morap::emulation::Node{{.eeprom = morap::emulation::dcx22l()}});
   }
 
   Result<std::size_t> read(UsbRequest request, std::span<std::byte> into) override {

@@ -9,7 +9,7 @@
 
 // The figures are those of the reference, worked out from the shipped program's arithmetic. Moves
 // begin where homing ends: 10240 -32000 57905 0 0 32000.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 using testing::ElementsAre;
@@ -213,4 +213,4 @@ TEST(CommanderJointMove, CutsTheNumberOfSamplesOff) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -12,7 +12,7 @@
 #include "harness/motion/parol6/planner.hpp"
 
 // The figures are those of the reference, with its tolerances.
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 constexpr PlannerSettings kCommander{.rules = Rules::kCommander};
@@ -191,4 +191,4 @@ TEST(CommanderLine, StopsWhereAJointChangesItsSign) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

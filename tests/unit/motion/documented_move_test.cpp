@@ -10,7 +10,7 @@
 #include "harness/motion/parol6/conversion.hpp"
 #include "harness/motion/parol6/planner.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 using Reason = Refusal::Reason;
@@ -323,4 +323,4 @@ TEST(DocumentedLine, IsRefusedTooHard) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

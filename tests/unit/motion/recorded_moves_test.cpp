@@ -11,7 +11,7 @@
 #include "harness/wire/parol6/frame.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 /// The frames of each move in a recording: each stretch of one moving command.
@@ -110,4 +110,4 @@ TEST(RecordedMoves, MovesBehindAHomingAreTheRecordedBytes) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -10,7 +10,7 @@
 #include "harness/motion/parol6/tracking.hpp"
 #include "tests/unit/support/allocations.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::planning {
 namespace {
 
 TEST(Tracking, AveragesTheSpeedAndThatWhichClosesTheDistanceInATick) {
@@ -137,4 +137,4 @@ TEST(CartesianJog, TakesNothingFromTheHeap) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::planning

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/rig/bus_log.hpp"
+#include "harness/rig/logged_ports.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,10 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "emulators/host/buses.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/link/transaction_bus.hpp"
-#include "harness/rig/bus_rig.hpp"
+#include "harness/rig/rig.hpp"
+#include "harness/wire/morap/dissector.hpp"
+#include "tests/unit/support/devices.hpp"
 
 namespace armjig {
 namespace {
@@ -40,12 +41,12 @@ class BusLog : public testing::Test {
   ~BusLog() override { fs::remove(path_); }
 
   [[nodiscard]] std::unique_ptr<BusPort> logged(std::unique_ptr<BusPort> port) const {
-    const auto morap = std::ranges::find(dissectors(), "morap", &DissectorEntry::device);
-    return std::move(LoggedBus::log(std::move(port), path_, *morap).value());
+    return std::make_unique<LoggedBus>(
+        std::move(port), WireLog::create(path_, "morap", morap::make_dissector).value());
   }
   [[nodiscard]] std::unique_ptr<BusPort> logged_node() const {
     const auto target = parse_target("emulated:").value();
-    return logged(std::move(find_hosted_bus("morap")->open(target).value()));
+    return logged(std::move(test::wiring<cli::OnBus>("morap").open_emulated(target).value()));
   }
   [[nodiscard]] std::vector<TraceEvent> events() const { return read_trace(path_).value().events; }
   [[nodiscard]] std::vector<std::string> lines() const {
@@ -147,14 +148,27 @@ TEST_F(BusLog, IsPutIntoARig) {
   RigOptions options;
   options.target = parse_target("emulated:").value();
   options.wire_log = path_;
-  auto rig = BusRig::open("morap", options, find_hosted_bus("morap")->open);
+  const auto wiring = test::wiring<cli::OnBus>("morap");
+  auto rig = Rig<BusPort>::open(wiring, options);
   ASSERT_TRUE(rig.has_value());
   const auto select = write_to(kNode, kSelectAngle);
   ASSERT_TRUE(rig->port().transfer({&select, 1}));
   EXPECT_EQ(events().size(), 1U);
   options.wire_log = "/nonexistent/log";
-  EXPECT_EQ(BusRig::open("morap", options, find_hosted_bus("morap")->open).error().code,
-            ErrorCode::kCannotWrite);
+  EXPECT_EQ(Rig<BusPort>::open(wiring, options).error().code, ErrorCode::kCannotWrite);
+}
+
+TEST_F(BusLog, HasWhatIsLeftOfAnImpairedTransaction) {
+  RigOptions options;
+  options.target = parse_target("emulated:").value();
+  options.wire_log = path_;
+  options.impairment = parse_impairment("out.disconnect-after=1").value();
+  auto rig = cli::open_rig<cli::OnBus>(test::device("morap"), options);
+  ASSERT_TRUE(rig.has_value());
+  const auto select = write_to(kNode, kSelectAngle);
+  EXPECT_EQ(rig->port().transfer({&select, 1}), Transfer::kByteRefused);
+  EXPECT_EQ(rig->impairments()->out.disconnects, 1U);
+  EXPECT_THAT(lines(), testing::ElementsAre(R"({"op":"write","addr":18,"hex":"","ack":"A"})"));
 }
 
 }  // namespace

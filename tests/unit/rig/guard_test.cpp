@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/rig/guard.hpp"
+#include "harness/rig/guarded_ports.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,7 +104,7 @@ class ScriptedPort final : public StreamPort {
 };
 
 std::unique_ptr<GuardedStream> guard(std::unique_ptr<StreamPort> port, Permissions permissions) {
-  auto guarded = GuardedStream::guard(std::move(port), parol6::make_judge(), permissions);
+  auto guarded = GuardedStream::guard(std::move(port), parol6::rig::make_judge(), permissions);
   return std::move(guarded.value());
 }
 
@@ -147,14 +147,14 @@ test::ByteVector read_all(GuardedStream& stream) {
 TEST(GuardedStream, BeginsWithTheOpeningBytes) {
   Line line;
   const auto stream = guard(line, {});
-  EXPECT_TRUE(test::same_bytes(line.written, parol6::make_judge()->opening_bytes()));
+  EXPECT_TRUE(test::same_bytes(line.written, parol6::rig::make_judge()->opening_bytes()));
 }
 
 TEST(GuardedStream, APortThatTakesNothingCannotBeGuarded) {
   Line line;
   line.write_error = Error{ErrorCode::kTimedOut};
   const auto guarded =
-      GuardedStream::guard(std::make_unique<ScriptedPort>(line), parol6::make_judge(), {});
+      GuardedStream::guard(std::make_unique<ScriptedPort>(line), parol6::rig::make_judge(), {});
   ASSERT_FALSE(guarded);
   EXPECT_EQ(guarded.error().code, ErrorCode::kTimedOut);
 }
@@ -177,6 +177,7 @@ TEST(GuardedStream, OfWhatIsRefusedNothingPasses) {
   EXPECT_EQ(written.error().code, ErrorCode::kForbidden);
   EXPECT_TRUE(line.written.empty());
   EXPECT_EQ(stream->last_refusal()->reason, "jog needs --allow move");
+  EXPECT_EQ(stream->last_refusal()->cause, Refusal::Cause::kRequest);
 }
 
 TEST(GuardedStream, WhatArrivesPassesUnchangedAlsoThroughWrites) {
@@ -218,6 +219,7 @@ TEST(GuardedStream, StopsUntilTheDeviceSaysThatItHeard) {
   (void)read_all(*stream);
   EXPECT_EQ(commands(line.written), std::vector(3, Command::kDisable));
   EXPECT_EQ(stream->last_refusal()->reason, "the emergency stop was pressed");
+  EXPECT_EQ(stream->last_refusal()->cause, Refusal::Cause::kDevice);
 }
 
 TEST(GuardedStream, AStopInTheMiddleOfAMessageIsHeard) {
@@ -288,7 +290,7 @@ TEST(GuardedStream, AWriteThatFailsHalfWayIsFollowedByTheOpeningBytes) {
   line.write_error.reset();
   line.written.clear();
   ASSERT_TRUE(stream->write(frame(Command::kIdle)));
-  const auto opening = test::as_vector(parol6::make_judge()->opening_bytes());
+  const auto opening = test::as_vector(parol6::rig::make_judge()->opening_bytes());
   EXPECT_TRUE(test::same_bytes(line.written, test::joined(opening, frame(Command::kIdle))));
 }
 
@@ -308,7 +310,7 @@ TEST(GuardedStream, AnArmThatGoesOutOfSightWhileItMovesIsStopped) {
 /// A port to an arm that lives longer than the port.
 class Borrowed final : public StreamPort {
  public:
-  explicit Borrowed(MemoryStream<parol6::Arm>& arm) : arm_{arm} {}
+  explicit Borrowed(MemoryStream<parol6::emulation::Arm>& arm) : arm_{arm} {}
   Result<void> write(Bytes bytes) override { return arm_.write(bytes); }
   Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
     return arm_.read(into, deadline);
@@ -316,10 +318,11 @@ class Borrowed final : public StreamPort {
   [[nodiscard]] Instant now() const override { return arm_.now(); }
 
  private:
-  MemoryStream<parol6::Arm>& arm_;
+  MemoryStream<parol6::emulation::Arm>& arm_;
 };
 
-std::array<std::int32_t, parol6::kJointCount> positions(MemoryStream<parol6::Arm>& line) {
+std::array<std::int32_t, parol6::kJointCount> positions(
+    MemoryStream<parol6::emulation::Arm>& line) {
   std::array<std::int32_t, parol6::kJointCount> all{};
   const auto joints = line.device().board().joints();
   for (std::size_t j = 0; j < all.size(); ++j) all[j] = joints[j].position().value;
@@ -339,7 +342,7 @@ CommandFrame jog_all(std::int32_t speed) {
 }
 
 TEST(GuardedStream, AnEmulatedArmStopsWhenItsPortGoesAway) {
-  MemoryStream line{parol6::Arm{}};
+  MemoryStream line{parol6::emulation::Arm{}};
   auto stream = guard(std::make_unique<Borrowed>(line), Permissions::all());
   ASSERT_TRUE(stream->write(encode(jog_all(1000))));
   let_pass(*stream, 100ms);
@@ -354,7 +357,7 @@ TEST(GuardedStream, AnEmulatedArmStopsWhenItsPortGoesAway) {
 }
 
 TEST(GuardedStream, AnEmulatedArmInTheMiddleOfHomingStopsWhenItsPortGoesAway) {
-  MemoryStream line{parol6::Arm{}};
+  MemoryStream line{parol6::emulation::Arm{}};
   auto stream = guard(std::make_unique<Borrowed>(line), Permissions::all());
   ASSERT_TRUE(stream->write(frame(Command::kHome)));
   let_pass(*stream, 10ms);
@@ -367,7 +370,7 @@ TEST(GuardedStream, AnEmulatedArmInTheMiddleOfHomingStopsWhenItsPortGoesAway) {
 }
 
 TEST(GuardedStream, AHomedArmThatJogsAtItsBoundIsStoppedThere) {
-  MemoryStream line{parol6::Arm{}};
+  MemoryStream line{parol6::emulation::Arm{}};
   const auto stream = guard(std::make_unique<Borrowed>(line), Permissions::all());
   ASSERT_TRUE(stream->write(frame(Command::kHome)));
   let_pass(*stream, 10ms);
@@ -384,6 +387,7 @@ TEST(GuardedStream, AHomedArmThatJogsAtItsBoundIsStoppedThere) {
     ASSERT_LT(++frames, 1000);
   }
   EXPECT_THAT(stream->last_refusal()->reason, HasSubstr("j1"));
+  EXPECT_EQ(stream->last_refusal()->cause, Refusal::Cause::kDevice);
   EXPECT_GE(positions(line)[0], bound);
   EXPECT_LE(positions(line)[0], bound + 16) << "10 ms at 1500 steps/s, and a pass";
 }
@@ -433,7 +437,8 @@ test::ByteVector piece(std::uint64_t number) {
 
 /// Gives the arm a history that ends with the arm standing, a jog in its store that was not
 /// accepted, and its receiver in the middle of something. Homing is left out: see parol6_judge.hpp.
-void give_a_past(MemoryStream<parol6::Arm>& line, const std::vector<std::uint64_t>& numbers) {
+void give_a_past(MemoryStream<parol6::emulation::Arm>& line,
+                 const std::vector<std::uint64_t>& numbers) {
   for (const auto number : numbers) {
     const auto bytes = piece(number);
     const bool may_home = std::ranges::any_of(
@@ -465,7 +470,7 @@ void write_in_pieces(StreamPort& stream, const std::vector<std::uint64_t>& numbe
 
 TEST(GuardedStream, WhateverIsWrittenWithoutPermissionNoJointMoves) {
   test::for_all([](const std::vector<std::uint64_t>& past, const std::vector<std::uint64_t>& now) {
-    MemoryStream line{parol6::Arm{}};
+    MemoryStream line{parol6::emulation::Arm{}};
     give_a_past(line, past);
     const auto before = positions(line);
     auto permissions = Permissions::all();

@@ -7,7 +7,7 @@
 
 #include "harness/wire/kinovazed/vocabulary.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::rig {
 namespace {
 
 class Court {
@@ -91,4 +91,4 @@ TEST(KinovaJudge, TakesASteeredArmForStillOnlyWithTheStickAtRest) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::rig

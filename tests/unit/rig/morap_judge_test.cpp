@@ -13,8 +13,9 @@
 #include "emulators/morap/node.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/link/emulated_bus_port.hpp"
+#include "harness/rig/guarded_ports.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::rig {
 namespace {
 
 constexpr BusAddress kNode{0x12};
@@ -24,18 +25,24 @@ constexpr BusAddress kSensor{0x68};
 class MorapJudge : public testing::Test {
  protected:
   bool lets(BusAddress address, std::string_view hex, std::string_view allowed) {
+    auto message = message_of(address, Access::kWrite);
     const auto bytes = from_hex(hex).value();
-    return !judge_->judge(write_to(address, bytes), parse_permissions(allowed).value());
+    message.insert(message.end(), bytes.begin(), bytes.end());
+    const bool is_let = !judge_->judge(message, parse_permissions(allowed).value());
+    if (is_let) judge_->observe(message);  // the device acknowledges it
+    return is_let;
   }
-  std::unique_ptr<BusJudge> judge_ = make_judge();
+  static std::vector<std::byte> message_of(BusAddress address, Access access) {
+    return {head_of({address, access})};
+  }
+  std::unique_ptr<Judge> judge_ = make_judge();
 };
 
 TEST_F(MorapJudge, LetsAnybodyLookAndStop) {
   for (const auto* harmless : {"", "80", "8A", "00", "1F", "06", "0E", "01 00 00"}) {
     EXPECT_TRUE(lets(kNode, harmless, "")) << harmless;
   }
-  std::array<std::byte, 4> answer{};
-  EXPECT_FALSE(judge_->judge(read_from(kNode, answer), {}));
+  EXPECT_FALSE(judge_->judge(message_of(kNode, Access::kRead), {}));
 }
 
 TEST_F(MorapJudge, AsksForMoveBeforeReferences) {
@@ -75,8 +82,9 @@ TEST_F(MorapJudge, NeverLetsWhatBreaksTheFirmware) {
       "22 00 00 00 00 00 00 00 10 C1",        // no inertia
   };
   for (const auto danger : dangers) EXPECT_FALSE(lets(kNode, danger, "all")) << danger;
-  const std::vector<std::byte> endless(256, std::byte{0xFE});
-  EXPECT_TRUE(judge_->judge(write_to(kNode, endless), Permissions::all()));
+  auto endless = message_of(kNode, Access::kWrite);
+  endless.resize(1 + 256, std::byte{0xFE});
+  EXPECT_TRUE(judge_->judge(endless, Permissions::all()));
 }
 
 TEST_F(MorapJudge, NeverLetsWhatHangsThePen) {
@@ -86,8 +94,7 @@ TEST_F(MorapJudge, NeverLetsWhatHangsThePen) {
   EXPECT_TRUE(lets(kPen, "", ""));
   EXPECT_FALSE(lets(kPen, "01 00", "all"));
   EXPECT_FALSE(lets(kPen, "07 80 00", "all"));
-  std::array<std::byte, 1> answer{};
-  EXPECT_TRUE(judge_->judge(read_from(kPen, answer), Permissions::all()));
+  EXPECT_TRUE(judge_->judge(message_of(kPen, Access::kRead), Permissions::all()));
 }
 
 TEST_F(MorapJudge, TakesOtherDevicesForWhatTheyAre) {
@@ -95,12 +102,35 @@ TEST_F(MorapJudge, TakesOtherDevicesForWhatTheyAre) {
   EXPECT_TRUE(lets(kSensor, "01 00 00 80 3F 00", "state"));
 }
 
+TEST_F(MorapJudge, StopsANodeUntilItHasAcknowledgedThatItIsDisabled) {
+  EXPECT_FALSE(judge_->may_be_moving());
+  EXPECT_TRUE(lets(kNode, "02 00 00 80 3F", "move"));
+  const auto disable = from_hex("24 00").value();
+  EXPECT_FALSE(judge_->judge(disable, {}));
+  ASSERT_TRUE(judge_->may_be_moving()) << "nobody knows whether the node heard it";
+  ASSERT_EQ(judge_->stop().size(), 1U);
+  EXPECT_THAT(judge_->stop()[0], testing::ElementsAreArray(disable));
+  judge_->observe(disable);
+  EXPECT_FALSE(judge_->may_be_moving());
+  EXPECT_TRUE(judge_->stop().empty());
+}
+
+TEST_F(MorapJudge, OfATransactionThatItRefusesNothingCounts) {
+  const auto disable = from_hex("24 00").value();
+  const auto reference = from_hex("26 02 00 00 80 3F").value();
+  const auto danger = from_hex("24 01 00 00 C0 7F").value();
+  EXPECT_TRUE(judge_->judge(std::array<Bytes, 2>{reference, danger}, Permissions::all()));
+  EXPECT_FALSE(judge_->may_be_moving());
+  EXPECT_FALSE(judge_->judge(std::array<Bytes, 2>{reference, disable}, Permissions::all()));
+  EXPECT_EQ(judge_->stop().size(), 1U) << "of the other node";
+}
+
 /// A guard before an emulated bus, so that what reaches it can be seen.
 class BusGuard : public testing::Test {
  protected:
   static std::unique_ptr<BusPort> bus() {
     i2c::Bus bus;
-    bus.attach(Node{{.eeprom = dcx22l()}});
+    bus.attach(emulation::Node{{.eeprom = emulation::dcx22l()}});
     return std::make_unique<EmulatedBusPort<i2c::Bus>>(std::move(bus));
   }
   static Result<Transfer> write(BusPort& port, std::string_view hex) {
@@ -118,7 +148,8 @@ class BusGuard : public testing::Test {
 };
 
 TEST_F(BusGuard, SendsNothingOfWhatItRefuses) {
-  GuardedBus guard{bus(), make_judge(), {}};
+  const auto guarded = std::move(GuardedBus::guard(bus(), make_judge(), {}).value());
+  auto& guard = *guarded;
   EXPECT_EQ(write(guard, "10").error().code, ErrorCode::kForbidden);
   EXPECT_EQ(status(guard), 3) << "still uncalibrated";
   ASSERT_TRUE(guard.last_refusal());
@@ -126,7 +157,9 @@ TEST_F(BusGuard, SendsNothingOfWhatItRefuses) {
 }
 
 TEST_F(BusGuard, StopsWhatMovesWhenItRefusesSomething) {
-  GuardedBus guard{bus(), make_judge(), Permissions::all()};
+  const auto guarded =
+      std::move(GuardedBus::guard(bus(), make_judge(), Permissions::all()).value());
+  auto& guard = *guarded;
   ASSERT_EQ(write(guard, "10"), Transfer::kDone);
   ASSERT_EQ(write(guard, "02 00 00 80 3F"), Transfer::kDone);
   ASSERT_EQ(status(guard), 1) << "enabled";
@@ -151,7 +184,10 @@ class Borrowed final : public TransactionBus {
 TEST_F(BusGuard, StopsWhatMovesWhenItGoes) {
   const auto port = bus();
   {
-    GuardedBus guard{std::make_unique<Borrowed>(*port), make_judge(), Permissions::all()};
+    const auto guarded = std::move(
+        GuardedBus::guard(std::make_unique<Borrowed>(*port), make_judge(), Permissions::all())
+            .value());
+    auto& guard = *guarded;
     ASSERT_EQ(write(guard, "10"), Transfer::kDone);
     ASSERT_EQ(write(guard, "02 00 00 80 3F"), Transfer::kDone);
   }
@@ -159,4 +195,4 @@ TEST_F(BusGuard, StopsWhatMovesWhenItGoes) {
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::rig

@@ -10,7 +10,7 @@
 #include "harness/wire/parol6/splitter.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::rig {
 namespace {
 
 using ::testing::HasSubstr;
@@ -247,7 +247,7 @@ TEST(Parol6Judge, StopBytesDisableWhateverWasHalfSent) {
   for (const auto& before : half_sent()) {
     FirmwareReceiver receiver;
     (void)accepted_by_shipped_board(receiver, before);
-    EXPECT_EQ(accepted_by_shipped_board(receiver, court->stop_bytes()),
+    EXPECT_EQ(accepted_by_shipped_board(receiver, court->stop()[0]),
               std::vector{Command::kDisable});
   }
 }
@@ -257,7 +257,7 @@ TEST(Parol6Judge, StoppingLeavesOutputsAndGripperAsTheyAre) {
   CommandFrame frame{.command = Command::kIdle, .in_out = io_flag::kOut1};
   frame.gripper = {.position = 200, .speed = 10, .command = gripper_command::kActivate, .mode = 1};
   ASSERT_FALSE(court.judge(frame));
-  const auto stop = decode_command(body_of(court->stop_bytes().last<kCommandFrameSize>()));
+  const auto stop = decode_command(body_of(court->stop()[0].last<kCommandFrameSize>()));
   frame.gripper.mode = 0;  // else it would calibrate with each of them
   EXPECT_EQ(stop.in_out, frame.in_out);
   EXPECT_EQ(stop.gripper, frame.gripper);
@@ -448,4 +448,4 @@ TEST(Parol6Judge, DisablingEndsHomingWhenTheBoardSaysThatItHasIt) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::rig

@@ -3,16 +3,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "emulators/host/pseudo_terminal.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/link/memory_stream.hpp"
-#include "harness/wire/dissector.hpp"
+#include "harness/rig/parol6_judge.hpp"
+#include "harness/rig/real_target.hpp"
+#include "harness/wire/parol6/dissector.hpp"
 #include "tests/unit/support/bytes.hpp"
 
 namespace armjig {
@@ -24,12 +26,21 @@ using parol6::Command;
 using parol6::CommandFrame;
 
 Outcome<std::unique_ptr<StreamPort>> open_arm(const Target& /*target*/) {
-  return std::make_unique<MemoryStream<parol6::Arm>>(parol6::Arm{});
+  return std::make_unique<MemoryStream<parol6::emulation::Arm>>(parol6::emulation::Arm{});
 }
 
-Outcome<Rig> open(const std::string& target, RigOptions options = {}) {
+Wiring<StreamPort> wiring(SerialLine line = {}) {
+  return {.device = "parol6",
+          .make_dissector = parol6::make_dissector,
+          .make_judge = parol6::rig::make_judge,
+          .open_emulated = open_arm,
+          .open_real = open_target<StreamPort>,
+          .line = line};
+}
+
+Outcome<Rig<StreamPort>> open(const std::string& target, RigOptions options = {}) {
   options.target = parse_target(target).value();
-  return Rig::open("parol6", options, open_arm);
+  return Rig<StreamPort>::open(wiring(), options);
 }
 
 const auto kIdle = encode(CommandFrame{.command = Command::kIdle});
@@ -51,12 +62,48 @@ TEST(Rig, EveryOtherDeviceIs) {
   EXPECT_EQ(rig->last_refusal()->hazard, Hazard::kMove);
 }
 
-TEST(Rig, AllDevicesThatItKnowsCanBeGuardedAndLogged) {
-  for (const auto& judge : judges()) {
-    EXPECT_NE(std::ranges::find(dissectors(), judge.device, &DissectorEntry::device),
-              dissectors().end())
-        << judge.device;
+TEST(Rig, AnEmulatedDeviceIsMadeByWhoKnowsEmulators) {
+  auto unknown = wiring();
+  unknown.open_emulated = [](const Target& target) -> Outcome<std::unique_ptr<StreamPort>> {
+    return problem(ErrorCode::kUnsupported, target.text, "asked for an emulator");
+  };
+  RigOptions options;
+  options.target = parse_target("emulated:").value();
+  EXPECT_EQ(Rig<StreamPort>::open(unknown, options).error().hint, "asked for an emulator");
+}
+
+TEST(Rig, AProgramWithoutRealLinksSaysSo) {
+  auto embedded = wiring();
+  embedded.open_real = nullptr;
+  RigOptions options;
+  options.target = parse_target("pty:/dev/pts/99999").value();
+  const auto rig = Rig<StreamPort>::open(embedded, options);
+  ASSERT_FALSE(rig);
+  EXPECT_EQ(rig.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(rig.error().where, "pty:/dev/pts/99999");
+}
+
+TEST(Rig, SetsATerminalToTheLineOfTheDevice) {
+  const auto terminal = PseudoTerminal::open().value();
+  for (const auto& [baud, name] :
+       {std::pair{1'200U, B1200}, {9'600U, B9600}, {3'000'000U, B3000000}}) {
+    RigOptions options;
+    options.target = parse_target("pty:" + terminal.path()).value();
+    ASSERT_TRUE(Rig<StreamPort>::open(wiring({.baud = baud, .stop_bits = 2}), options));
+    termios mode{};
+    ASSERT_EQ(::tcgetattr(terminal.master().value(), &mode), 0);
+    EXPECT_EQ(::cfgetospeed(&mode), name);
+    EXPECT_NE(mode.c_cflag & CSTOPB, 0U);
   }
+}
+
+TEST(Rig, AnArmThatMayMoveIsNotReopened) {
+  RigOptions options;
+  options.when_gone = WhenGone::kReopen;
+  options.permissions = Permissions::all();
+  const auto rig = open("pty:/dev/pts/99999", options);
+  ASSERT_FALSE(rig);
+  EXPECT_EQ(rig.error().code, ErrorCode::kBadValue);
 }
 
 TEST(Rig, ImpairmentsAreOutsideTheGuardSoAFlippedBitCannotMakeAMotion) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/rig/session_guard.hpp"
+#include "harness/rig/guarded_ports.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ class SessionGuard : public ::testing::Test {
  protected:
   void open(Permissions permissions) {
     port = std::make_unique<GuardedSession>(std::make_unique<Recorder>(notes),
-                                            kinovazed::make_judge(), permissions);
+                                            kinovazed::rig::make_judge(), permissions);
     ASSERT_TRUE(port->connect({}));
   }
   Result<void> send(std::string_view text) { return port->send(std::as_bytes(std::span{text})); }
@@ -77,6 +77,29 @@ TEST_F(SessionGuard, StopsAMovingArmBeforeAnyEndOfTheConnection) {
   ASSERT_TRUE(port->connect({}));
   port->reset();
   EXPECT_THAT(notes, ElementsAre("connect", ";EStop;", "reset"));
+  notes.clear();
+  ASSERT_TRUE(port->connect({}));
+  port.reset();
+  EXPECT_THAT(notes, ElementsAre("connect", ";EStop;", "close"));
+}
+
+TEST_F(SessionGuard, StopsAMovingArmWhenItRefusesSomething) {
+  open(parse_permissions("move").value());
+  EXPECT_TRUE(send("Retract\r\n"));
+  EXPECT_EQ(send("QuitEStop\r\n").error().code, ErrorCode::kForbidden);
+  EXPECT_THAT(notes, ElementsAre("connect", "Retract;", ";EStop;"));
+  EXPECT_EQ(port->last_refusal()->reason, "QuitEStop needs --allow state");
+  EXPECT_EQ(port->last_refusal()->cause, Refusal::Cause::kRequest);
+}
+
+TEST_F(SessionGuard, SaysNothingAtAnEndThatSomebodyLooksAtUnlessItGoesItself) {
+  port = std::make_unique<GuardedSession>(std::make_unique<Recorder>(notes),
+                                          kinovazed::rig::make_judge(), Permissions::all(),
+                                          std::make_shared<GuardState>(), WhenLeft::kSayNothing);
+  ASSERT_TRUE(port->connect({}));
+  EXPECT_TRUE(send("Retract\r\n"));
+  port->close();
+  EXPECT_THAT(notes, ElementsAre("connect", "Retract;", "close"));
   notes.clear();
   ASSERT_TRUE(port->connect({}));
   port.reset();

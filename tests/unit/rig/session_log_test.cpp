@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/rig/session_log.hpp"
+#include "harness/rig/logged_ports.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,12 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
-#include "emulators/host/devices.hpp"
 #include "harness/capture/trace.hpp"
-#include "harness/rig/session_rig.hpp"
+#include "harness/rig/rig.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
+#include "tests/unit/support/devices.hpp"
 
 namespace armjig {
 namespace {
@@ -23,11 +25,11 @@ class SessionLogTest : public testing::Test {
  protected:
   ~SessionLogTest() override { fs::remove(path_); }
 
-  [[nodiscard]] std::unique_ptr<SessionSource> logged_server() const {
+  [[nodiscard]] Rig<SessionSource> logged_server() const {
     RigOptions options;
     options.target = parse_target("emulated:").value();
     options.wire_log = path_;
-    return std::move(open_server("kinovazed", options, hosted_server("kinovazed").open).value());
+    return *cli::open_rig<cli::OnServer>(test::device("kinovazed"), options);
   }
   [[nodiscard]] std::vector<TraceEvent> events() const { return read_trace(path_).value().events; }
   /// Direction, connection and text of each line.
@@ -55,9 +57,9 @@ void hear(SessionPort& port) {
 
 TEST_F(SessionLogTest, NumbersTheConnectionsOfOneServer) {
   {
-    const auto server = logged_server();
-    const auto one = server->make_port();
-    const auto two = server->make_port();
+    auto server = logged_server();
+    const auto one = server.port().make_port();
+    const auto two = server.port().make_port();
     ASSERT_TRUE(one->connect(one->now()));
     ASSERT_TRUE(two->connect(two->now()));
     say(*one, "QuitEStop\r\n");
@@ -75,8 +77,8 @@ TEST_F(SessionLogTest, NumbersTheConnectionsOfOneServer) {
 }
 
 TEST_F(SessionLogTest, SaysWhatWasMeant) {
-  const auto server = logged_server();
-  const auto port = server->make_port();
+  auto server = logged_server();
+  const auto port = server.port().make_port();
   ASSERT_TRUE(port->connect(port->now()));
   say(*port, "Quit");
   say(*port, "EStop\r\n");
@@ -87,13 +89,42 @@ TEST_F(SessionLogTest, SaysWhatWasMeant) {
 }
 
 TEST_F(SessionLogTest, HasWhatAHandDoes) {
-  const auto server = logged_server();
-  ASSERT_TRUE(server->touch("arm.plugged", 0));
-  ASSERT_FALSE(server->touch("arm.foot", 0));
+  auto server = logged_server();
+  ASSERT_TRUE(server.port().touch("arm.plugged", 0));
+  ASSERT_FALSE(server.port().touch("arm.foot", 0));
   const auto all = events();
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].dir, "input");
   EXPECT_EQ(all[0].name, "arm.plugged");
+}
+
+TEST_F(SessionLogTest, HasWhatPassesOnAConnectionThatIsUsedAsAStream) {
+  RigOptions options;
+  options.target = parse_target("emulated:").value();
+  options.wire_log = path_;
+  options.impairment = parse_impairment("out.delay=1ms").value();
+  {
+    auto server = cli::open_rig<cli::OnServer>(test::device("kinovazed"), options).value();
+    auto rig = connect(std::move(server), "emulated:").value();
+    constexpr std::string_view kLine = "QuitEStop\r\n";
+    ASSERT_TRUE(rig.port().write(std::as_bytes(std::span{kLine})));
+    std::array<std::byte, 256> buffer;
+    EXPECT_GT(rig.port().read(buffer, rig.port().now() + 500ms).value(), 0U);
+    EXPECT_FALSE(rig.last_refusal());
+    EXPECT_EQ(rig.impairments()->out.bytes_out, kLine.size());
+  }
+  EXPECT_THAT(lines(), testing::ElementsAre("connect 0 ok", "to_device 0 ", "from_device 0 ",
+                                            "disconnect 0 client-close"));
+}
+
+TEST_F(SessionLogTest, AServerWhereNobodyListensCannotBeAStream) {
+  RigOptions options;
+  options.target = parse_target("tcp:127.0.0.1:1").value();
+  auto server = cli::open_rig<cli::OnServer>(test::device("kinovazed"), options).value();
+  const auto rig = connect(std::move(server), "tcp:127.0.0.1:1");
+  ASSERT_FALSE(rig);
+  EXPECT_EQ(rig.error().code, ErrorCode::kRefused);
+  EXPECT_EQ(rig.error().where, "tcp:127.0.0.1:1");
 }
 
 /// A port that was made later, as real ones are, whose clock begins anew.
@@ -111,8 +142,7 @@ class LatePort final : public SessionPort {
 };
 
 TEST_F(SessionLogTest, WritesTheTimesOfAllPortsByOneClock) {
-  const auto& kinovazed = *std::ranges::find(dissectors(), "kinovazed", &DissectorEntry::device);
-  const auto log = SessionLog::create(path_, kinovazed).value();
+  const auto log = WireLog::create(path_, "kinovazed", kinovazed::make_dissector).value();
   LoggedSession late{std::make_unique<LatePort>(), log, 500ms};
   LoggedSession early{std::make_unique<LatePort>(), log};
   ASSERT_TRUE(late.connect({}));

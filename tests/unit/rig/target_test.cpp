@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/rig/real_target.hpp"
+
 namespace armjig {
 namespace {
 
@@ -11,14 +13,10 @@ using ::testing::HasSubstr;
 using ::testing::Pair;
 using ::testing::UnorderedElementsAre;
 
-Outcome<std::unique_ptr<StreamPort>> no_emulators(const Target& target) {
-  return problem(ErrorCode::kUnsupported, target.text, "asked for an emulator");
-}
-
 Problem problem_of(std::string_view text) {
   auto target = parse_target(text);
   if (!target) return target.error();
-  auto port = open_stream(*target, no_emulators);
+  auto port = open_target<StreamPort>(*target, {});
   return port ? Problem{} : port.error();
 }
 
@@ -64,10 +62,6 @@ TEST(Target, WhatIsNoneIsAnsweredWithAllForms) {
 
 TEST(Target, AnEmulatedOneHasNoAddress) {
   EXPECT_THAT(problem_of("emulated:parol6").hint, HasSubstr("no address"));
-}
-
-TEST(Target, AnEmulatedOneIsMadeByWhoKnowsEmulators) {
-  EXPECT_EQ(problem_of("emulated:").hint, "asked for an emulator");
 }
 
 TEST(Target, ASerialPortNeedsAPathAndMayHaveASpeed) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/rig/wire_log.hpp"
+#include "harness/rig/logged_ports.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,7 +12,7 @@
 #include "emulators/parol6/arm.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/link/memory_stream.hpp"
-#include "harness/rig/rig.hpp"
+#include "harness/wire/parol6/dissector.hpp"
 #include "tests/unit/support/bytes.hpp"
 
 namespace armjig {
@@ -22,8 +21,8 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-const DissectorEntry& parol6_dissector() {
-  return *std::ranges::find(dissectors(), "parol6", &DissectorEntry::device);
+Outcome<std::shared_ptr<WireLog>> parol6_log(const std::string& path) {
+  return WireLog::create(path, "parol6", parol6::make_dissector);
 }
 
 class WireLog : public ::testing::Test {
@@ -31,8 +30,8 @@ class WireLog : public ::testing::Test {
   ~WireLog() override { fs::remove(path_); }
 
   [[nodiscard]] std::unique_ptr<StreamPort> logged_arm() const {
-    auto arm = std::make_unique<MemoryStream<parol6::Arm>>(parol6::Arm{});
-    return std::move(LoggedStream::log(std::move(arm), path_, parol6_dissector()).value());
+    auto arm = std::make_unique<MemoryStream<parol6::emulation::Arm>>(parol6::emulation::Arm{});
+    return std::make_unique<LoggedStream>(std::move(arm), parol6_log(path_).value());
   }
   [[nodiscard]] Trace trace() const { return read_trace(path_).value(); }
   [[nodiscard]] std::vector<nlohmann::json> lines() const {
@@ -113,7 +112,7 @@ TEST_F(WireLog, LeavesOutWhatWasNotWritten) {
     [[nodiscard]] Instant now() const override { return {}; }
   };
   const auto port =
-      std::move(LoggedStream::log(std::make_unique<Broken>(), path_, parol6_dissector()).value());
+      std::make_unique<LoggedStream>(std::make_unique<Broken>(), parol6_log(path_).value());
   std::array<std::byte, 8> buffer;
   EXPECT_FALSE(port->write(kIdle));
   EXPECT_FALSE(port->read(buffer, {}));
@@ -121,8 +120,7 @@ TEST_F(WireLog, LeavesOutWhatWasNotWritten) {
 }
 
 TEST_F(WireLog, AFileThatCannotBeWrittenIsNamed) {
-  auto arm = std::make_unique<MemoryStream<parol6::Arm>>(parol6::Arm{});
-  const auto log = LoggedStream::log(std::move(arm), "/nonexistent/log", parol6_dissector());
+  const auto log = parol6_log("/nonexistent/log");
   ASSERT_FALSE(log);
   EXPECT_EQ(log.error().code, ErrorCode::kCannotWrite);
   EXPECT_EQ(log.error().where, "/nonexistent/log");

@@ -12,9 +12,9 @@
 namespace armjig::script {
 namespace {
 
-using parol6::Law;
-using parol6::Move;
-using parol6::Tracking;
+using parol6::planning::Law;
+using parol6::planning::Move;
+using parol6::planning::Tracking;
 using ::testing::HasSubstr;
 
 ParseResult parse_line(std::string_view line) {
@@ -40,7 +40,7 @@ Move move_of(std::string_view line) {
 
 struct Taken {
   std::string_view line;
-  parol6::Timing timing;
+  parol6::planning::Timing timing;
   Tracking tracking{};
   std::string_view ignored{};  ///< behind what was understood
 };

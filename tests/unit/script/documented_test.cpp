@@ -10,9 +10,9 @@
 namespace armjig::script {
 namespace {
 
-using parol6::Law;
-using parol6::Move;
-using parol6::Tracking;
+using parol6::planning::Law;
+using parol6::planning::Move;
+using parol6::planning::Tracking;
 using ::testing::HasSubstr;
 
 ParseResult parse_line(std::string_view line) {

@@ -50,8 +50,8 @@ int end_of_joint6(std::string_view arguments, Host host) {
                                    "MoveJoint(0, 0, 0, 0, 0, 180, t=2, {})\nDelay(0.5)",
                                    arguments),
                        Dialect::kDocumented);
-  Interpreter interpreter{program, {.planner = {.limits = parol6::LimitCheck::kIgnored}}};
-  parol6::Arm arm;
+  Interpreter interpreter{program, {.planner = {.limits = parol6::planning::LimitCheck::kIgnored}}};
+  parol6::emulation::Arm arm;
   Period period{host};
   parol6::JointSteps seen{};
   for (;;) {

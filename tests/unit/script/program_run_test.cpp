@@ -28,8 +28,8 @@ namespace armjig::script {
 namespace {
 
 using namespace std::chrono_literals;
-using parol6::Activity;
 using parol6::JointSteps;
+using parol6::drive::Activity;
 using ::testing::HasSubstr;
 
 /// A drive and an emulated arm on virtual time.
@@ -46,16 +46,16 @@ class Jig {
   }
 
   void home() {
-    const auto homing = parol6::begin_home(drive);
+    const auto homing = parol6::drive::begin_home(drive);
     ASSERT_TRUE(homing.has_value());
     const auto ending = go_through(**homing);
     ASSERT_TRUE(ending && ending->is_success);
     seen.clear();
   }
 
-  MemoryStream<parol6::Arm> port{parol6::Arm{}};
-  parol6::Drive drive;
-  parol6::DriveLoop loop{port, drive};
+  MemoryStream<parol6::emulation::Arm> port{parol6::emulation::Arm{}};
+  parol6::drive::Drive drive;
+  parol6::drive::DriveLoop loop{port, drive};
   std::vector<JointSteps> seen;  ///< telemetry of each cycle
 };
 
@@ -100,12 +100,13 @@ TEST_P(Example, BringsTheEmulatedArmToWhereThePlanEnds) {
   ASSERT_TRUE(ending->is_success) << ending->text;
   ASSERT_EQ(run.moves().size(), plan.moves.size());
   for (const auto& move : run.moves()) {
-    if (move.tracking == parol6::Tracking::kSpeed) continue;
+    if (move.tracking == parol6::planning::Tracking::kSpeed) continue;
     for (const auto error : move.final_error) {
       EXPECT_LE(std::abs(error), 1) << "line " << program_.statements[move.statement].place.line;
     }
   }
-  if (run.moves().empty() || run.moves().back().tracking == parol6::Tracking::kSpeed) return;
+  if (run.moves().empty() || run.moves().back().tracking == parol6::planning::Tracking::kSpeed)
+    return;
   for (std::size_t j = 0; j < parol6::kJointCount; ++j) {
     EXPECT_NEAR(jig.drive.telemetry()->position[j].value, plan.positions.back()[j].value, 1) << j;
   }
@@ -123,7 +124,7 @@ struct Crookedness {
 Crookedness crookedness_of(const std::vector<JointSteps>& way) {
   const auto arm = arm::parol6_commander();
   const auto pose_of = [&](const JointSteps& steps) {
-    return arm::forward(arm, parol6::radians_of(steps));
+    return arm::forward(arm, parol6::planning::radians_of(steps));
   };
   const auto first = pose_of(way.front());
   const auto last = pose_of(way.back());
@@ -143,8 +144,8 @@ Crookedness crookedness_of(const std::vector<JointSteps>& way) {
     const auto straight =
         norm(turn) == 0 ? first.rotation
                         : arm::rotation_about((1 / norm(turn)) * turn, angle) * first.rotation;
-    most.degrees =
-        std::max(most.degrees, parol6::to_degrees(arm::angle_between(pose.rotation, straight)));
+    most.degrees = std::max(
+        most.degrees, parol6::planning::to_degrees(arm::angle_between(pose.rotation, straight)));
   }
   return most;
 }
@@ -195,8 +196,9 @@ TEST(ProgramRun, EndsWithTheEmergencyStop) {
   const auto program = test::program_of("Delay(2)", Dialect::kDocumented);
   Jig jig;
   ASSERT_TRUE(jig.loop.cycle().has_value());
-  jig.port.device().touch(jig.port.now() + 200ms,
-                          [](parol6::Plant& plant) { plant.inputs.estop = parol6::Level::kLow; });
+  jig.port.device().touch(jig.port.now() + 200ms, [](parol6::emulation::Plant& plant) {
+    plant.inputs.estop = parol6::emulation::Level::kLow;
+  });
   ProgramRun run{program, {}};
   const auto ending = jig.go_through(run);
   ASSERT_TRUE(ending.has_value());
@@ -231,7 +233,7 @@ TEST(ProgramRun, ResultsKeepToTheirSchemaAndPlotsToWhatMoved) {
       test::program_of("MoveJoint(10, 0, 0, 0, 0, 0, t=1)\nMoveJoint(0, 0, 0, 0, 0, 0, t=1, speed)",
                        Dialect::kDocumented);
   Jig jig;
-  ProgramRun run{program, {.planner = {.limits = parol6::LimitCheck::kIgnored}}};
+  ProgramRun run{program, {.planner = {.limits = parol6::planning::LimitCheck::kIgnored}}};
   run.keep_samples(1000);
   ASSERT_TRUE(jig.go_through(run)->is_success);
   const auto json = to_json(program, run,

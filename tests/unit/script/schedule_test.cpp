@@ -60,7 +60,8 @@ void expect_recorded(const Schedule& schedule, const std::string& name,
 }
 
 /// The boards of these recordings were not homed, so that angles say nothing.
-constexpr InterpreterSettings kUnhomed{.planner = {.limits = parol6::LimitCheck::kIgnored}};
+constexpr InterpreterSettings kUnhomed{
+    .planner = {.limits = parol6::planning::LimitCheck::kIgnored}};
 constexpr std::array kFar{2500, -6000, 7000, -3000, 3500, 12000};
 
 TEST(Schedule, OfATrapezoidWithPositionsIsTheWholeRecording) {

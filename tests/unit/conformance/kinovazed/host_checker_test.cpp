@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For each requirement of a client a program that breaks just that one; and programs that are good.
-#include "conformance/kinovazed/host/checker.hpp"
+#include "conformance/kinovazed/host/check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,26 +16,25 @@
 #include <vector>
 
 #include "conformance/program_check.hpp"
-#include "emulators/host/kinovazed_options.hpp"
-#include "emulators/host/memory_server.hpp"
+#include "emulators/kinovazed/options.hpp"
+#include "emulators/memory/in_memory.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/drive/kinovazed/client.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::programs {
 namespace {
 
+using namespace drive;
 using namespace std::chrono_literals;
 
-const ProgramCheckEntry& entry() {
-  return *std::ranges::find(program_checks(), "kinovazed", &ProgramCheckEntry::device);
-}
+ProgramCheckEntry entry() { return program_check(); }
 
 /// A server whose clients are judged, in virtual time.
 class Session {
  public:
   explicit Session(DeviceOptions options = {}) {
     options.try_emplace("plant", "bench");
-    server_ = make_memory_server(check_.watch(make_hosted_server(*make_server(options, "test"))));
+    server_ = open_in_memory(check_.watch(make_hosted(*emulation::make(options, "test"))));
     port_ = make_port();
   }
 
@@ -320,7 +319,7 @@ std::set<std::string> broken_in(const Trace& trace) {
                                                        {"to_device", Kind::kToServer},
                                                        {"from_device", Kind::kFromServer},
                                                        {"disconnect", Kind::kClosed}};
-  const auto checker = make_host_checker();
+  const auto checker = program_check().make({});
   for (const auto& event : trace.events) {
     const auto found = kKinds.find(event.dir);
     if (found == kKinds.end()) continue;
@@ -407,4 +406,4 @@ TEST(RecordedClients, AreBlamedForTheStateWhereTheServerRejected) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::programs

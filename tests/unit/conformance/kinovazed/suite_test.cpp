@@ -12,15 +12,15 @@
 #include "conformance/mutation.hpp"
 #include "conformance/run.hpp"
 #include "harness/rig/target.hpp"
+#include "tests/unit/support/suites.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::conformance {
 namespace {
 
 Report run(const std::string& target, RunOptions options = {}) {
-  const auto suite = kinovazed::suite();
-  const auto bench = suite.open({.target = *parse_target(target)});
+  const auto bench = test::kinovazed_suite().bench(target);
   options.permissions = Permissions::all();
-  return run_suite(suite, **bench, options, [](const ReportRow&) {});
+  return run_suite(suite(), *bench, options, [](const ReportRow&) {});
 }
 
 std::vector<std::string> but_passed(const Report& report) {
@@ -62,7 +62,7 @@ TEST(KinovazedSuite, PassesOnTheDocumentedServer) {
 }
 
 TEST(KinovazedSuite, FindsExactlyTheMappedDeviationsOfTheFirmwareFromTheDocument) {
-  const auto suite = kinovazed::suite();
+  const auto suite = conformance::suite();
   for (const auto& row : run("emulated:", {.profile = armjig::Profile::kDocumented}).rows) {
     const auto& requirement = *find_requirement(suite, row.requirement);
     const auto wanted =
@@ -76,8 +76,7 @@ TEST(KinovazedSuite, GivesTheSameReportForTheSameSeed) {
 }
 
 TEST(KinovazedMutants, AreFoundAndProveEveryRequirement) {
-  const auto entry = std::ranges::find(mutants(), "kinovazed", &MutantsEntry::device);
-  const auto result = run_mutants(suite(), *entry, {});
+  const auto result = run_mutants(suite(), mutants_entry(), test::kinovazed_suite().open, {});
   ASSERT_TRUE(result);
   EXPECT_THAT(result->broken_on_sound, testing::IsEmpty());
   EXPECT_GE(result->fates.size(), 100U);
@@ -88,4 +87,4 @@ TEST(KinovazedMutants, AreFoundAndProveEveryRequirement) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::conformance

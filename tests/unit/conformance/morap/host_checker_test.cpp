@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/morap/host/checker.hpp"
+#include "conformance/morap/host/check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,14 +10,14 @@
 
 #include "harness/core/hex.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::programs {
 namespace {
 
 using namespace std::chrono_literals;
 
 /// Transactions 50 ms apart, or as many ms as stand in front of an `@`; odd first bytes are reads.
 std::set<std::string> offences_of(const std::vector<std::string>& transactions) {
-  const auto checker = make_host_checker();
+  const auto checker = program_check().make({});
   Instant time{};
   for (const auto& line : transactions) {
     const auto mark = line.find('@');
@@ -99,4 +99,4 @@ TEST(MorapHostChecker, FindsEachOffenceByItself) {
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::programs

@@ -5,20 +5,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "conformance/mutation.hpp"
 #include "conformance/run.hpp"
 #include "harness/rig/target.hpp"
+#include "tests/unit/support/suites.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::conformance {
 namespace {
 
 Report run(const std::string& target, RunOptions options = {}) {
-  const auto bench = suite().open({.target = *parse_target(target)});
+  const auto bench = test::morap_suite().bench(target);
   options.permissions = Permissions::all();
-  return run_suite(suite(), **bench, options, [](const ReportRow&) {});
+  return run_suite(suite(), *bench, options, [](const ReportRow&) {});
 }
 
 std::vector<std::string> not_passed(const Report& report) {
@@ -50,7 +52,7 @@ TEST(MorapSuite, PassesOnTheEmulatedFirmware) {
 }
 
 TEST(MorapSuite, PassesOnTheFirmwareWithTheOtherMotorAtAnotherAddress) {
-  EXPECT_THAT(not_passed(run("emulated:?motor=dcx26l&node=1")), testing::IsEmpty());
+  EXPECT_THAT(not_passed(run("emulated:?motor=dcx26l&nodes=1")), testing::IsEmpty());
 }
 
 TEST(MorapSuite, PassesOnTheDocumentedNode) {
@@ -74,8 +76,7 @@ TEST(MorapSuite, GivesTheSameReportForTheSameSeed) {
 }
 
 TEST(MorapMutants, AreAllFoundAndBreakEachMust) {
-  const auto entry = std::ranges::find(mutants(), "morap", &MutantsEntry::device);
-  const auto result = run_mutants(suite(), *entry, {});
+  const auto result = run_mutants(suite(), mutants_entry(), test::morap_suite().open, {});
   ASSERT_TRUE(result);
   EXPECT_GE(result->fates.size(), 100U);
   EXPECT_THAT(result->broken_on_sound, testing::IsEmpty());
@@ -86,14 +87,22 @@ TEST(MorapMutants, AreAllFoundAndBreakEachMust) {
   for (const auto* requirement : result->unproven) ADD_FAILURE() << requirement->id;
 }
 
+TEST(MorapTargets, AreTheFirstNodeOfABusThatMayHaveOthers) {
+  const std::string file = testing::TempDir() + "nodes.toml";
+  std::ofstream{file} << "[[pen]]\n[[node]]\nid = 4\nmotor = \"dcx26l\"\n[[node]]\nid = 3\n";
+  const RunOptions options{.selection = {.filter = "morap.read"}};
+  EXPECT_THAT(not_passed(run("emulated:?nodes=3,1&pen=yes", options)), testing::IsEmpty());
+  EXPECT_THAT(not_passed(run("emulated:?file=" + file, options)), testing::IsEmpty());
+}
+
 TEST(MorapTargets, NameTheOptionThatIsWrong) {
-  for (const auto* target : {"emulated:?node=17", "emulated:?motor=none", "emulated:?speed=1",
+  for (const auto* target : {"emulated:?nodes=17", "emulated:?motor=none", "emulated:?speed=1",
                              "emulated:?fault=law:none", "emulated:?profile=third"}) {
-    const auto bench = suite().open({.target = *parse_target(target)});
+    const auto bench = test::morap_suite().open({.target = *parse_target(target)});
     ASSERT_FALSE(bench) << target;
     EXPECT_THAT(bench.error().where + bench.error().hint, testing::Not(testing::IsEmpty()));
   }
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::conformance

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For each requirement of a host a program that breaks just that one; and programs that are good.
-#include "conformance/parol6/host/checker.hpp"
+#include "conformance/parol6/host/check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,9 +18,11 @@
 #include "harness/wire/parol6/readings.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::programs {
 namespace {
 
+using drive::Drive;
+using namespace emulation;
 using namespace std::chrono_literals;
 using test::as_vector;
 using test::ByteVector;
@@ -86,7 +88,7 @@ class Program {
 
  private:
   Arm arm_;
-  std::unique_ptr<ProgramChecker> checker_ = make_host_checker();
+  std::unique_ptr<ProgramChecker> checker_ = program_check().make({});
   Duration now_{};
 };
 
@@ -469,7 +471,7 @@ TEST(HostChecker, FindsNothingWrongWithTheFirstFrameOfTheGui) {
 }
 
 TEST(HostChecker, DoesNotBlameAProgramForALateLink) {
-  const auto checker = make_host_checker({.most = 10ms});
+  const auto checker = program_check().make({.most = 10ms});
   auto now = at(0ms);
   const auto send = [&](const CommandFrame& frame) { checker->to_device(now, encode(frame)); };
   for (int i = 0; i < 10; ++i, now += 10ms) send(idle());
@@ -484,4 +486,4 @@ TEST(HostChecker, DoesNotBlameAProgramForALateLink) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::programs

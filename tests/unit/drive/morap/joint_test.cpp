@@ -15,9 +15,10 @@
 #include "harness/link/emulated_bus_port.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::drive {
 namespace {
 
+using namespace emulation;
 using namespace std::chrono_literals;
 using i2c::Trouble;
 using test::same_bytes;
@@ -190,4 +191,4 @@ TEST(BusCode, EachHasASentenceOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <string>
 
-namespace armjig::morap {
+namespace armjig::morap::drive {
 namespace {
 
 using ::testing::HasSubstr;
@@ -75,4 +75,4 @@ TEST(ParameterFile, RefusesARateThatTheWireCannotSay) {
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::drive

@@ -5,13 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
 
-#include "harness/link/memory_bus.hpp"
+#include "emulators/memory/in_memory.hpp"
 #include "harness/link/memory_session.hpp"
 #include "harness/link/memory_stream.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::demo {
+namespace armjig::demo::emulation {
 namespace {
 
 using test::ByteVector;
@@ -162,7 +163,8 @@ TEST_F(DemoOnASession, ForgetsItsStateWithTheConnection) {
 class DemoOnABus : public testing::Test {
  protected:
   static constexpr BusAddress kAddress{BusDevice::kAddress};
-  MemoryBus<BusDevice> bus_{BusDevice{}};
+  std::unique_ptr<BusPort> port_ = open_in_memory(make_hosted(BusDevice{}));
+  BusPort& bus_ = *port_;
 };
 
 TEST_F(DemoOnABus, TakesAnOperationAndTellsItsState) {
@@ -205,4 +207,4 @@ TEST_F(DemoOnABus, TakesAsLongAsItsBits) {
 }
 
 }  // namespace
-}  // namespace armjig::demo
+}  // namespace armjig::demo::emulation

@@ -27,14 +27,14 @@ class MorapBus : public testing::Test {
 
   static Bus make_bus() {
     Bus bus;
-    bus.attach(morap::Node{{.eeprom = morap::dcx22l()}});
-    bus.attach(morap::Pen{});
+    bus.attach(morap::emulation::Node{{.eeprom = morap::emulation::dcx22l()}});
+    bus.attach(morap::emulation::Pen{});
     Thermometer sensor{kSensor.value};
     sensor.set_temperature(-1.5);
     bus.attach(sensor);
     return bus;
   }
-  morap::Node& node() { return port_.bus().device<morap::Node>(0); }
+  morap::emulation::Node& node() { return port_.bus().device<morap::emulation::Node>(0); }
 
   /// Chooses a register and reads from it.
   std::vector<std::byte> read(BusAddress address, std::byte selector, std::size_t size) {
@@ -95,9 +95,9 @@ TEST_F(MorapBus, CarriesAnyOtherDevice) {
 
 TEST_F(MorapBus, DevicesWithOneAddressAnswerTogether) {
   // Spec, bus vector B10: a zero bit wins.
-  port_.bus().attach(morap::Node{{.eeprom = morap::dcx22l()}});
-  node().turn_encoder(at(0ns), 1000);                           // 8B 68 59 3D
-  port_.bus().device<morap::Node>(3).turn_encoder(at(0ns), 1);  // 4D A0 5E 38
+  port_.bus().attach(morap::emulation::Node{{.eeprom = morap::emulation::dcx22l()}});
+  node().turn_encoder(at(0ns), 1000);                                      // 8B 68 59 3D
+  port_.bus().device<morap::emulation::Node>(3).turn_encoder(at(0ns), 1);  // 4D A0 5E 38
   const std::vector expected{std::byte{0x8B & 0x4D}, std::byte{0x68 & 0xA0}, std::byte{0x59 & 0x5E},
                              std::byte{0x3D & 0x38}};
   EXPECT_EQ(read(kNode, std::byte{0x80}, 4), expected);
@@ -181,7 +181,7 @@ TEST_F(MorapBus, EffectsDoNotWaitForAStop) {
 
 TEST_F(MorapBus, TheTunerHoldsTheClockIfItIsToldTo) {
   Bus bus;
-  bus.attach(morap::Node{{.eeprom = morap::dcx22l(), .tune_stretch = 1ms}});
+  bus.attach(morap::emulation::Node{{.eeprom = morap::emulation::dcx22l(), .tune_stretch = 1ms}});
   EmulatedBusPort port{bus};
   EXPECT_EQ(port.start(kNode, kWrite), Ack::kAck);
   for (const int byte : {0x22, 0, 0xCD, 0xCC, 0x4C, 0x3E, 0, 0, 0x10, 0xC1}) {
@@ -193,7 +193,7 @@ TEST_F(MorapBus, TheTunerHoldsTheClockIfItIsToldTo) {
 TEST_F(MorapBus, CopyIsASnapshot) {
   auto copy = port_.bus();
   node().turn_encoder(port_.now(), 1000);
-  EXPECT_EQ(copy.device<morap::Node>(0).angle(), 0.0F);
+  EXPECT_EQ(copy.device<morap::emulation::Node>(0).angle(), 0.0F);
   EXPECT_NE(node().angle(), 0.0F);
 }
 

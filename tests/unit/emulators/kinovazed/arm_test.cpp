@@ -6,7 +6,7 @@
 #include "emulators/kinovazed/objectives.hpp"
 #include "emulators/kinovazed/pose.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -217,4 +217,4 @@ TEST(ArmPort, FailsAfterSomeUsesForSome) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

@@ -6,7 +6,7 @@
 
 #include "emulators/kinovazed/server.hpp"
 
-namespace armjig::kinovazed::test {
+namespace armjig::kinovazed::emulation::test {
 
 /// A server with the arm of the recordings, and a client that waits in virtual time.
 class Bench {
@@ -83,4 +83,4 @@ inline ServerOptions documented() {
   return options;
 }
 
-}  // namespace armjig::kinovazed::test
+}  // namespace armjig::kinovazed::emulation::test

@@ -9,7 +9,7 @@
 
 #include "tests/unit/emulators/kinovazed/bench.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::emulation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -346,4 +346,4 @@ TEST(KinovaServer, CanPutTheEventBeforeItsReply) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::emulation

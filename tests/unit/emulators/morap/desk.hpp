@@ -8,7 +8,7 @@
 #include "emulators/morap/node.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::morap::test {
+namespace armjig::morap::emulation::test {
 
 /// A node that is spoken to in hexadecimal digits, as docs/spec/morap.md writes them. Talking takes
 /// no time here, so that ticks come only when they are asked for.
@@ -52,4 +52,4 @@ class Desk {
   std::int32_t turned_ = 0;
 };
 
-}  // namespace armjig::morap::test
+}  // namespace armjig::morap::emulation::test

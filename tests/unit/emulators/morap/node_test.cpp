@@ -10,7 +10,7 @@
 #include "tests/unit/emulators/morap/desk.hpp"
 #include "tests/unit/emulators/morap/vectors.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 using armjig::test::as_vector;
@@ -219,4 +219,4 @@ TEST(MorapNode, PassesIdleTimeWithoutCountingEveryTick) {
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

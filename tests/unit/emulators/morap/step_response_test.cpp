@@ -11,7 +11,7 @@
 
 #include "emulators/morap/tuner.hpp"
 
-namespace armjig::morap {
+namespace armjig::morap::emulation {
 namespace {
 
 /// A joint without friction, whose rated current is so high that nothing limits.
@@ -170,4 +170,4 @@ TEST(StepResponse, IsTheSameOfASetThatIsProgrammedInsteadOfTuned) {
 }
 
 }  // namespace
-}  // namespace armjig::morap
+}  // namespace armjig::morap::emulation

@@ -5,7 +5,7 @@
 #include <string_view>
 
 /// The test vectors of docs/spec/morap.md: computed by the compiled firmware of the vendor.
-namespace armjig::morap::vectors {
+namespace armjig::morap::emulation::vectors {
 
 /// A session with a fresh node, `;` between its steps: `Whh..` writes, `Rn hh..` reads n bytes and
 /// expects them, `Tn` lets n ticks come (one without a number), `E=n` turns the shaft to n counts,
@@ -208,4 +208,4 @@ inline constexpr std::array<std::string_view, 15> kPrograms{
     "20009001020000803F00000040020000803F0000004001000000BF00000000A9",
 };
 
-}  // namespace armjig::morap::vectors
+}  // namespace armjig::morap::emulation::vectors

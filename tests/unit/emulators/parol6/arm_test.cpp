@@ -12,7 +12,7 @@
 #include "tests/unit/support/allocations.hpp"
 #include "tests/unit/wire/parol6/vectors.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using test::ByteVector;
@@ -309,4 +309,4 @@ TEST(Heap, GrowsLittleUnderAFloodOfPolls) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -12,7 +12,7 @@
 #include "tests/unit/emulators/parol6/session.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -162,4 +162,4 @@ TEST(RandomSessions, GetEverywhere) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

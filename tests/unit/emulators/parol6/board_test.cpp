@@ -9,7 +9,7 @@
 #include "tests/unit/emulators/parol6/desk.hpp"
 #include "tests/unit/wire/parol6/vectors.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using test::as_vector;
@@ -765,4 +765,4 @@ TEST(BoardCan, IgnoresAnswersOfOtherLengthsAndTheErrorBit) {  // section 8.3
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

@@ -12,7 +12,7 @@
 #include "emulators/parol6/board.hpp"
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// A command frame for tests that are about what the board does with it.
 [[nodiscard]] inline CommandFrame command(Command code,
@@ -105,4 +105,4 @@ class Desk {
   return Board{standard_plant(), BoardTiming{.pass_period = std::chrono::microseconds{pass_us}}};
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

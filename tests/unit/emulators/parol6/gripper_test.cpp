@@ -9,7 +9,7 @@
 
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using test::ByteVector;
@@ -665,4 +665,4 @@ TEST(Gripper, GoesOnFromASnapshotAsFromItself) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

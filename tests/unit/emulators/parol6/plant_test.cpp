@@ -7,7 +7,7 @@
 
 #include "emulators/parol6/homing.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using Side = LimitSwitch::Side;
@@ -92,4 +92,4 @@ TEST(StandardPlant, HasItsSwitchesWhereTheReferenceHasThem) {  // section 6.5
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

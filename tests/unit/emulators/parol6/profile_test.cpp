@@ -11,7 +11,7 @@
 #include "tests/unit/emulators/parol6/desk.hpp"
 #include "tests/unit/wire/parol6/vectors.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using test::as_vector;
@@ -273,4 +273,4 @@ TEST(DocumentedBoard, SendsSetPointsThatCameWithACalibration) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

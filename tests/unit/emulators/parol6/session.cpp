@@ -8,7 +8,7 @@
 
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using test::ByteVector;
@@ -252,4 +252,4 @@ class Author {
 
 Session random_session(std::uint64_t seed, Duration length) { return Author{seed, length}.write(); }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

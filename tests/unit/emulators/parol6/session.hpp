@@ -9,7 +9,7 @@
 #include "emulators/parol6/board.hpp"
 #include "harness/core/time.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// One thing that is done to a board.
 struct Action {
@@ -31,4 +31,4 @@ struct Session {
 
 [[nodiscard]] Session random_session(std::uint64_t seed, Duration length);
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

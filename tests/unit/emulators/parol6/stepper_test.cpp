@@ -9,7 +9,7 @@
 
 #include "tests/unit/support/bytes.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 Stepper stepper_with(float acceleration, float max_speed = 50'000.0F) {
@@ -331,4 +331,4 @@ TEST(StepperSpan, OfAWeekAtFullSpeedLosesNoStep) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

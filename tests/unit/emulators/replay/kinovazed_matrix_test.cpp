@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::replay {
 namespace {
 
 using ::testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST(KinovaMatrix, IsRefusedIfItIsNone) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::replay

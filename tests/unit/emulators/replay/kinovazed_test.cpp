@@ -6,8 +6,9 @@
 #include <string>
 
 #include "emulators/replay/kinovazed_rules.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
 
-namespace armjig::kinovazed {
+namespace armjig::kinovazed::replay {
 namespace {
 
 using Events = std::vector<TraceEvent>;
@@ -19,9 +20,9 @@ TEST(KinovaRecordings, AreWhatTheServerDoes) {
   for (const auto& file : *files) {
     const auto trace = read_trace(file);
     ASSERT_TRUE(trace);
-    const auto difference = verify(*trace);
+    const auto difference = verify(*trace, {.run = replay, .compare = session_difference});
     ASSERT_TRUE(difference) << describe(difference.error());
-    EXPECT_FALSE(*difference) << describe(**difference, *trace);
+    EXPECT_FALSE(*difference) << describe(**difference, *trace, make_dissector);
   }
 }
 
@@ -129,4 +130,4 @@ TEST(KinovaReplay, RefusesWhatItCannotMean) {
 }
 
 }  // namespace
-}  // namespace armjig::kinovazed
+}  // namespace armjig::kinovazed::replay

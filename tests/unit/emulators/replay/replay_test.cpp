@@ -6,20 +6,20 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "emulators/replay/parol6.hpp"
 #include "harness/capture/trace.hpp"
-#include "harness/wire/dissector.hpp"
+#include "harness/wire/parol6/dissector.hpp"
 
 namespace armjig {
 namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
-using testing::StartsWith;
 
+constexpr Replay kReplay{.run = parol6::replay::replay};
 const std::string kCaptures = ARMJIG_SOURCE_DIR "/captures/parol6";
 
 /// All recordings; none if they cannot be found, which a test of its own reports.
@@ -34,10 +34,10 @@ class Recording : public testing::TestWithParam<std::string> {};
 TEST_P(Recording, IsReproducedToTheByte) {
   const auto trace = read_trace(GetParam());
   ASSERT_TRUE(trace) << describe(trace.error());
-  const auto difference = verify(*trace);
+  const auto difference = verify(*trace, kReplay);
   ASSERT_TRUE(difference) << describe(difference.error());
-  EXPECT_FALSE(*difference) << describe(**difference, *trace) << "  again: armjig trace verify "
-                            << GetParam();
+  EXPECT_FALSE(*difference) << describe(**difference, *trace, parol6::make_dissector)
+                            << "  again: armjig trace verify " << GetParam();
 }
 
 std::string name_of(const testing::TestParamInfo<std::string>& recording) {
@@ -62,17 +62,17 @@ TEST(CorruptedRecording, IsFoundOutWithLineAndField) {
   auto trace = jog_recording();
   auto& event = telemetry(trace, 10);
   event.bytes[40] ^= std::byte{0x80};  // homed: J1
-  const auto difference = verify(trace);
+  const auto difference = verify(trace, kReplay);
   ASSERT_TRUE(difference && *difference);
   EXPECT_EQ((*difference)->expected->line, event.line);
-  const auto text = describe(**difference, trace);
+  const auto text = describe(**difference, trace, parol6::make_dissector);
   EXPECT_THAT(text, HasSubstr(":" + std::to_string(event.line) + ": differs at "));
   EXPECT_THAT(text, EndsWith("  homed: expected j1 (0x83), got (0x03)\n"));
 }
 
 TEST(CorruptedRecording, IsFoundOutByEveryBitOfAFrame) {
   const auto trace = jog_recording();
-  const auto replayed = replays().back().replay(trace);
+  const auto replayed = kReplay.run(trace);
   ASSERT_TRUE(replayed);
   for (std::size_t bit = 0; bit < std::size_t{60} * 8; ++bit) {
     auto recorded = replayed->recorded;
@@ -86,9 +86,10 @@ TEST(CorruptedRecording, IsFoundOutByEveryBitOfAFrame) {
 TEST(CorruptedRecording, IsFoundOutByTheTimeOfAnAnswer) {
   auto trace = jog_recording();
   telemetry(trace, 10).time += std::chrono::microseconds{1};
-  const auto difference = verify(trace);
+  const auto difference = verify(trace, kReplay);
   ASSERT_TRUE(difference && *difference);
-  EXPECT_THAT(describe(**difference, trace), HasSubstr("  time: expected "));
+  EXPECT_THAT(describe(**difference, trace, parol6::make_dissector),
+              HasSubstr("  time: expected "));
 }
 
 TEST(CorruptedRecording, IsFoundOutByAnAnswerThatIsMissing) {
@@ -96,7 +97,7 @@ TEST(CorruptedRecording, IsFoundOutByAnAnswerThatIsMissing) {
   const auto line = telemetry(trace, 11).line;
   std::erase_if(trace.events,
                 [lost = telemetry(trace, 10).line](const auto& e) { return e.line == lost; });
-  const auto difference = verify(trace);
+  const auto difference = verify(trace, kReplay);
   ASSERT_TRUE(difference && *difference);
   EXPECT_EQ((*difference)->expected->line, line);
 }
@@ -104,7 +105,7 @@ TEST(CorruptedRecording, IsFoundOutByAnAnswerThatIsMissing) {
 TEST(CorruptedRecording, IsFoundOutByAnAnswerTooMany) {
   auto trace = jog_recording();
   trace.events.push_back(telemetry(trace, 10));
-  const auto difference = verify(trace);
+  const auto difference = verify(trace, kReplay);
   ASSERT_TRUE(difference && *difference);
   EXPECT_FALSE((*difference)->actual);
 }
@@ -115,7 +116,7 @@ TEST(MalformedRecording, IsRefusedWithTheKeyThatIsWrong) {
     const auto place = trace.header.find(from);
     EXPECT_NE(place, std::string::npos) << from;
     trace.header.replace(place, from.size(), to);
-    const auto result = verify(trace);
+    const auto result = verify(trace, kReplay);
     return result ? "accepted" : describe(result.error());
   };
   EXPECT_THAT(
@@ -140,7 +141,7 @@ TEST(MalformedRecording, IsRefusedWithTheLineThatNoBoardCanHave) {
     event.time = trace.events.front().time;
     event.line = 2;
     trace.events.insert(trace.events.begin(), event);
-    const auto result = verify(trace);
+    const auto result = verify(trace, kReplay);
     return result ? "accepted" : describe(result.error());
   };
   TraceEvent event;
@@ -156,28 +157,6 @@ TEST(MalformedRecording, IsRefusedWithTheLineThatNoBoardCanHave) {
   event.bytes.resize(9);
   EXPECT_THAT(refusal(event), HasSubstr(".jsonl:2: "));
 }
-
-TEST(MalformedRecording, IsRefusedIfNoEmulatorReplaysItsDevice) {
-  Trace trace;
-  trace.path = "x.jsonl";
-  trace.device = "toaster";
-  const auto result = verify(trace);
-  ASSERT_FALSE(result);
-  EXPECT_EQ(result.error().code, ErrorCode::kUnknownDevice);
-  EXPECT_THAT(describe(result.error()), StartsWith("x.jsonl: "));
-}
-
-/// The names of the devices that a room knows.
-template <class Entries>
-std::set<std::string> names_in(const Entries& entries) {
-  std::set<std::string> names;
-  for (const auto& entry : entries) {
-    EXPECT_TRUE(names.emplace(entry.device).second) << entry.device << " twice";
-  }
-  return names;
-}
-
-TEST(Rooms, NameTheSameDevices) { EXPECT_EQ(names_in(replays()), names_in(dissectors())); }
 
 }  // namespace
 }  // namespace armjig

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -212,14 +211,6 @@ TEST(FieldDifferences, NamesEveryFieldThatDiffers) {
             (std::vector<std::string>{"position.j1: expected 10242 steps, got 10243 steps",
                                       "io: expected in1 estop_released (0x8F), got in1 (0x87)"}));
   EXPECT_TRUE(field_differences(message.fields, other, other).empty());
-}
-
-TEST(Dissectors, AreListedOnceByName) {
-  std::set<std::string_view> names;
-  for (const auto& entry : dissectors()) {
-    EXPECT_TRUE(names.insert(entry.device).second) << entry.device;
-    EXPECT_NE(entry.make(), nullptr);
-  }
 }
 
 }  // namespace

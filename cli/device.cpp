@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/device.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace armjig::cli {
+namespace {
+
+/// A part of an entry, and whether it is there.
+struct Part {
+  std::string_view name;
+  bool is_there;
+};
+
+}  // namespace
+
+std::vector<std::string_view> missing_parts(const Device& device) {
+  std::vector<Part> parts{{"name", !device.name.empty()},
+                          {"title", !device.title.empty()},
+                          {"make_dissector", device.make_dissector != nullptr},
+                          {"options", device.options != nullptr},
+                          {"suite", device.suite != nullptr},
+                          {"mutants", device.mutants != nullptr},
+                          {"replay", device.replay.run != nullptr}};
+  std::visit(
+      [&parts](const auto& kind) {
+        parts.insert(parts.end(), {{"make_judge", kind.make_judge != nullptr},
+                                   {"emulate", kind.emulate != nullptr},
+                                   {"make_bench", kind.make_bench != nullptr},
+                                   {"open_console", kind.open_console != nullptr},
+                                   {"watch", kind.watch != nullptr}});
+      },
+      device.port);
+  std::vector<std::string_view> missing;
+  for (const auto& part : parts) {
+    if (!part.is_there) missing.push_back(part.name);
+  }
+  return missing;
+}
+
+std::string names_of(Devices devices) {
+  std::string names;
+  for (const auto& device : devices) {
+    names.append(names.empty() ? "" : ", ").append(device.name);
+  }
+  return names;
+}
+
+Outcome<const Device*> find_device(Devices devices, std::string_view name) {
+  const auto found = std::ranges::find(devices, name, &Device::name);
+  if (found != devices.end()) return &*found;
+  return problem(ErrorCode::kUnknownDevice, fmt::format("'{}'", name),
+                 "there are: " + names_of(devices));
+}
+
+std::vector<KnownBoard> known_boards(Devices devices) {
+  std::vector<KnownBoard> boards;
+  for (const auto& device : devices) {
+    const auto* const stream = std::get_if<OnStream>(&device.port);
+    if (stream != nullptr && stream->usb) boards.push_back({device.name, *stream->usb});
+  }
+  return boards;
+}
+
+Outcome<std::unique_ptr<DeviceConsole>> open_console(const Device& device, const RigOptions& how,
+                                                     const std::string& target, Say say) {
+  return with_rig(device, how, [&](const auto& kind, auto rig) {
+    return kind.open_console(std::move(rig), target, std::move(say));
+  });
+}
+
+Outcome<std::unique_ptr<Watched>> open_watched(const Device& device, const RigOptions& how,
+                                               Duration period) {
+  return with_rig(device, how, [&](const auto& kind, auto rig) {
+    return kind.watch(std::move(rig), how.target.text, WatchHow{period, how.when_gone});
+  });
+}
+
+Outcome<std::unique_ptr<Bench>> open_bench(const Device& device, const RigOptions& how) {
+  return with_rig(device, how, [&how](const auto& kind, auto rig) {
+    return kind.make_bench(std::move(rig), how);
+  });
+}
+
+}  // namespace armjig::cli

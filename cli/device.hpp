@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "conformance/bench.hpp"
+#include "conformance/mutation.hpp"
+#include "conformance/program_check.hpp"
+#include "conformance/suite.hpp"
+#include "emulators/memory/hosted.hpp"
+#include "emulators/memory/in_memory.hpp"
+#include "emulators/memory/serial_line.hpp"
+#include "emulators/replay/replay.hpp"
+#include "harness/console/device_console.hpp"
+#include "harness/console/watched.hpp"
+#include "harness/core/error.hpp"
+#include "harness/core/option.hpp"
+#include "harness/rig/attached.hpp"
+#include "harness/rig/real_target.hpp"
+#include "harness/rig/rig.hpp"
+#include "harness/rig/wiring.hpp"
+
+namespace armjig::cli {
+
+/// What of a device depends on its kind of port. `where` is what messages call the options.
+template <class PortType, class HostedType>
+struct OnPort {
+  using Port = PortType;
+  using Hosted = HostedType;
+
+  std::unique_ptr<Judge> (*make_judge)(){};  ///< for the guard of a real one
+  /// The emulated device. Problems: `kUnknownOption`, `kBadValue`, those of files it names.
+  Outcome<std::unique_ptr<Hosted>> (*emulate)(const DeviceOptions& options,
+                                              const std::string& where){};
+  Outcome<std::unique_ptr<Bench>> (*make_bench)(Rig<Port> rig, const RigOptions& how){};
+  Outcome<std::unique_ptr<DeviceConsole>> (*open_console)(Rig<Port> rig, const std::string& target,
+                                                          Say say){};
+  Outcome<std::unique_ptr<Watched>> (*watch)(Rig<Port> rig, const std::string& target,
+                                             const WatchHow& how){};
+};
+
+struct OnStream : OnPort<StreamPort, HostedStream> {
+  /// How its serial port is set, and how long characters take; none: USB, where both mean nothing.
+  std::optional<SerialLine> line{};
+  std::optional<UsbId> usb{};  ///< of a board that can be told by it
+};
+
+struct OnServer : OnPort<SessionSource, HostedServer> {
+  std::uint16_t tcp_port{};  ///< where clients look for it
+};
+
+struct OnBus : OnPort<BusPort, HostedBus> {};
+
+/// Adds a subcommand that only this device has.
+using AddOwnCommand = void (*)(CLI::App& app, const Device& device, Action& action);
+
+/// A device, as all rooms and subcommands know it: one value, written in one place. A stranger's
+/// program has its own (docs/adding-a-device.md).
+struct Device {
+  std::string_view name;
+  std::string_view title;  ///< what it is, in a few words
+  std::unique_ptr<Dissector> (*make_dissector)(){};
+  std::variant<OnStream, OnServer, OnBus> port;
+  std::span<const OptionRow> (*options)() noexcept {};  ///< of the emulated one
+  Suite (*suite)(){};
+  MutantsEntry (*mutants)() noexcept {};
+  std::optional<ProgramCheckEntry> program_check{};  ///< none: nothing is demanded of programs
+  Replay replay{};                                   ///< how recordings drive it
+  double watch_rate = 10;  ///< questions, or looks, a second unless the user wants another one
+  std::vector<AddOwnCommand> commands{};
+};
+
+/// The emulated device with all that its entry says of its link. Problems as for `OnPort::emulate`.
+template <class Kind>
+[[nodiscard]] Outcome<std::unique_ptr<typename Kind::Hosted>> emulate(const Kind& kind,
+                                                                      const DeviceOptions& options,
+                                                                      const std::string& where) {
+  auto hosted = kind.emulate(options, where);
+  if constexpr (std::is_same_v<Kind, OnStream>) {
+    if (hosted && kind.line) return put_on_line(*std::move(hosted), rate_of(*kind.line));
+  }
+  return hosted;
+}
+
+/// The parts that an entry must have and lacks, by their names; nothing if it is complete.
+[[nodiscard]] std::vector<std::string_view> missing_parts(const Device& device);
+
+/// All names, with `, ` between.
+[[nodiscard]] std::string names_of(Devices devices);
+
+/// Problems: `kUnknownDevice`, with the names that there are.
+[[nodiscard]] Outcome<const Device*> find_device(Devices devices, std::string_view name);
+
+/// Those of them that can be told by the USB numbers of their port.
+[[nodiscard]] std::vector<KnownBoard> known_boards(Devices devices);
+
+/// As the entry says; of other kinds of port it means nothing.
+template <class Kind>
+[[nodiscard]] SerialLine line_of(const Kind& kind) {
+  if constexpr (std::is_same_v<Kind, OnStream>) return kind.line.value_or(SerialLine{});
+  return {};
+}
+
+/// Longer than any device may hold the clock of a bus: one that does is a finding and not a
+/// failure.
+inline constexpr Duration kClockPatience = std::chrono::milliseconds{100};
+
+/// What the jig must know to open a target of the device.
+template <class Kind>
+[[nodiscard]] Wiring<typename Kind::Port> wiring_of(const Device& device, const Kind& kind) {
+  return {.device = device.name,
+          .make_dissector = device.make_dissector,
+          .make_judge = kind.make_judge,
+          .open_emulated =
+              [&kind](const Target& target) {
+                return emulate(kind, target.options, target.text).map([](auto hosted) {
+                  if constexpr (std::is_same_v<Kind, OnBus>) {
+                    return open_in_memory(std::move(hosted), kClockPatience);
+                  } else {
+                    return open_in_memory(std::move(hosted));
+                  }
+                });
+              },
+          .open_real = open_target<typename Kind::Port>,
+          .line = line_of(kind)};
+}
+
+/// Opens a target of the device and does `work(kind, rig)` with it, whatever its kind of port.
+/// Answers what `work` does, an `Outcome`.
+template <class Work>
+[[nodiscard]] auto with_rig(const Device& device, const RigOptions& how, Work work) {
+  return std::visit(
+      [&](const auto& kind) {
+        using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
+        using Answer = decltype(work(kind, std::declval<Rig<Port>>()));
+        auto rig = Rig<Port>::open(wiring_of(device, kind), how);
+        return rig ? work(kind, *std::move(rig)) : Answer{tl::unexpected{rig.error()}};
+      },
+      device.port);
+}
+
+/// The rig of a device whose kind of port is known: `OnStream`, `OnServer` or `OnBus`.
+template <class Kind>
+[[nodiscard]] Outcome<Rig<typename Kind::Port>> open_rig(const Device& device,
+                                                         const RigOptions& how) {
+  return Rig<typename Kind::Port>::open(wiring_of(device, std::get<Kind>(device.port)), how);
+}
+
+/// The device's console and what `watch` shows of it, on a target. Problems as for `with_rig`.
+[[nodiscard]] Outcome<std::unique_ptr<DeviceConsole>> open_console(const Device& device,
+                                                                   const RigOptions& how,
+                                                                   const std::string& target,
+                                                                   Say say);
+[[nodiscard]] Outcome<std::unique_ptr<Watched>> open_watched(const Device& device,
+                                                             const RigOptions& how,
+                                                             Duration period);
+
+/// The conversation of the device's suite with a target.
+[[nodiscard]] Outcome<std::unique_ptr<Bench>> open_bench(const Device& device,
+                                                         const RigOptions& how);
+
+}  // namespace armjig::cli

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/replay/demo.hpp"
+#include "cli/devices/devices.hpp"
+#include "conformance/demo/suite.hpp"
+#include "emulators/demo/options.hpp"
+#include "harness/console/generic.hpp"
+#include "harness/rig/demo_judge.hpp"
+#include "harness/wire/demo/demo.hpp"
+
+namespace armjig::demo {
+namespace {
+
+Outcome<std::unique_ptr<HostedStream>> emulate(const DeviceOptions& options,
+                                               const std::string& where) {
+  return emulation::make(options, where).map([](auto machine) {
+    return make_hosted(std::move(machine));
+  });
+}
+
+Outcome<std::unique_ptr<DeviceConsole>> open_console(Rig<StreamPort> rig, const std::string& target,
+                                                     Say say) {
+  return generic::open(StreamLink{std::move(rig)}, make_dissector(), target, std::move(say));
+}
+
+Outcome<std::unique_ptr<Watched>> watch(Rig<StreamPort> rig, const std::string& /*target*/,
+                                        const WatchHow& /*how*/) {
+  const auto query = encode(Operation::kQuery);
+  return generic::watch(StreamLink{std::move(rig)}, make_dissector(),
+                        {{query.begin(), query.end()}});
+}
+
+}  // namespace
+
+cli::Device device() {
+  return {.name = "demo",
+          .title = "the worked example, a device that nobody built",
+          .make_dissector = make_dissector,
+          .port = cli::OnStream{{.make_judge = rig::make_judge,
+                                 .emulate = emulate,
+                                 .make_bench = conformance::make_bench,
+                                 .open_console = open_console,
+                                 .watch = watch}},
+          .options = emulation::options,
+          .suite = conformance::suite,
+          .mutants = conformance::mutants_entry,
+          .replay = {.run = replay::replay}};
+}
+
+}  // namespace armjig::demo

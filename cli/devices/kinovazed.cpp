@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/replay/kinovazed.hpp"
+#include "cli/devices/devices.hpp"
+#include "conformance/kinovazed/host/check.hpp"
+#include "conformance/kinovazed/suite.hpp"
+#include "emulators/kinovazed/options.hpp"
+#include "emulators/replay/kinovazed_matrix.hpp"
+#include "emulators/replay/kinovazed_rules.hpp"
+#include "harness/config/option_file.hpp"
+#include "harness/console/kinovazed/console.hpp"
+#include "harness/rig/kinovazed_judge.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
+
+namespace armjig::kinovazed {
+namespace {
+
+Outcome<std::unique_ptr<HostedServer>> emulate(const DeviceOptions& options,
+                                               const std::string& where) {
+  return emulation::make(options, where, option_files()).map([](auto server) {
+    return make_hosted(std::move(server));
+  });
+}
+
+}  // namespace
+
+cli::Device device() {
+  return {.name = "kinovazed",
+          .title = "KinovaZED server",
+          .make_dissector = make_dissector,
+          .port = cli::OnServer{{.make_judge = rig::make_judge,
+                                 .emulate = emulate,
+                                 .make_bench = conformance::make_bench,
+                                 .open_console = console::open,
+                                 .watch = console::watch},
+                                51717},
+          .options = emulation::options,
+          .suite = conformance::suite,
+          .mutants = conformance::mutants_entry,
+          .program_check = programs::program_check(),
+          .replay = {.run = replay::replay,
+                     .compare = replay::session_difference,
+                     .verify_table = replay::verify_matrix}};
+}
+
+}  // namespace armjig::kinovazed

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/replay/morap.hpp"
+#include "cli/devices/devices.hpp"
+#include "cli/morap/commands.hpp"
+#include "conformance/morap/host/check.hpp"
+#include "conformance/morap/suite.hpp"
+#include "emulators/morap/options.hpp"
+#include "harness/config/option_file.hpp"
+#include "harness/console/morap/console.hpp"
+#include "harness/rig/morap_judge.hpp"
+#include "harness/wire/morap/dissector.hpp"
+
+namespace armjig::morap {
+namespace {
+
+Outcome<std::unique_ptr<HostedBus>> emulate(const DeviceOptions& options,
+                                            const std::string& where) {
+  return emulation::make(options, where, option_files()).map([](auto bus) {
+    return make_hosted(std::move(bus));
+  });
+}
+
+}  // namespace
+
+cli::Device device() {
+  return {.name = "morap",
+          .title = "MORAP motor nodes",
+          .make_dissector = make_dissector,
+          .port = cli::OnBus{{.make_judge = rig::make_judge,
+                              .emulate = emulate,
+                              .make_bench = conformance::make_bench,
+                              .open_console = console::open,
+                              .watch = console::watch}},
+          .options = emulation::options,
+          .suite = conformance::suite,
+          .mutants = conformance::mutants_entry,
+          .program_check = programs::program_check(),
+          .replay = {.run = replay::replay},
+          .commands = {cli::add_i2c, cli::add_morap}};
+}
+
+}  // namespace armjig::morap

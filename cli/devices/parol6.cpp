@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/replay/parol6.hpp"
+#include "cli/devices/devices.hpp"
+#include "cli/parol6/commands.hpp"
+#include "conformance/parol6/host/check.hpp"
+#include "conformance/parol6/suite.hpp"
+#include "emulators/parol6/options.hpp"
+#include "harness/console/parol6/console.hpp"
+#include "harness/rig/parol6_judge.hpp"
+#include "harness/wire/parol6/dissector.hpp"
+
+namespace armjig::parol6 {
+namespace {
+
+Outcome<std::unique_ptr<HostedStream>> emulate(const DeviceOptions& options,
+                                               const std::string& where) {
+  return emulation::make(options, where).map([](auto arm) { return make_hosted(std::move(arm)); });
+}
+
+}  // namespace
+
+cli::Device device() {
+  return {.name = "parol6",
+          .title = "PAROL6 control board",
+          .make_dissector = make_dissector,
+          .port = cli::OnStream{{.make_judge = rig::make_judge,
+                                 .emulate = emulate,
+                                 .make_bench = conformance::make_bench,
+                                 .open_console = console::open,
+                                 .watch = console::watch},
+                                std::nullopt,
+                                UsbId{0x0483, 0x5740}},
+          .options = emulation::options,
+          .suite = conformance::suite,
+          .mutants = conformance::mutants_entry,
+          .program_check = programs::program_check(),
+          .replay = {.run = replay::replay},
+          .watch_rate = 100,
+          .commands = {cli::add_plan, cli::add_run, cli::add_script}};
+}
+
+}  // namespace armjig::parol6

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/parol6/script_file.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "harness/arm/orientation.hpp"
+#include "harness/motion/parol6/joint_table.hpp"
+#include "harness/script/parser.hpp"
+
+namespace armjig::cli {
+namespace {
+
+/// Six whole numbers of 24 bits with commas between them.
+std::optional<parol6::JointSteps> parse_places(std::string_view text) {
+  constexpr std::int32_t kMost = 1 << 23;
+  parol6::JointSteps places;
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    const auto word = text.substr(0, text.find(','));
+    const auto* const end = word.data() + word.size();
+    std::int32_t value = 0;
+    const auto read = std::from_chars(word.data(), end, value);
+    const bool is_last = j + 1 == places.size();
+    if (read.ec != std::errc{} || read.ptr != end || value < -kMost || value >= kMost ||
+        is_last != (word.size() == text.size())) {
+      return std::nullopt;
+    }
+    places[j] = Steps{value};
+    if (!is_last) text.remove_prefix(word.size() + 1);
+  }
+  return places;
+}
+
+}  // namespace
+
+void add_script_options(CLI::App& app, ScriptOptions& options) {
+  app.add_option("FILE", options.file, "the program, '-' for standard input")->required();
+  app.add_option("--dialect", options.dialect,
+                 "documented: the vendor's document made precise; commander: what its PC program "
+                 "takes a line for")
+      ->check(CLI::IsMember({"documented", "commander"}))
+      ->capture_default_str();
+}
+
+script::Dialect dialect_of(const ScriptOptions& options) {
+  return options.dialect == "commander" ? script::Dialect::kCommander
+                                        : script::Dialect::kDocumented;
+}
+
+Outcome<std::string> read_script_text(const ScriptOptions& options) {
+  std::ifstream file;
+  const bool is_stdin = options.file == "-";
+  if (!is_stdin) file.open(options.file, std::ios::binary);
+  auto& in = is_stdin ? static_cast<std::istream&>(std::cin) : file;
+  if (!in) return problem(ErrorCode::kCannotRead, options.file, "check path and permissions");
+  std::string text(script::kMostBytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad()) return problem(ErrorCode::kCannotRead, options.file, "is it a folder?");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+tl::expected<script::Program, Exit> read_script(const ScriptOptions& options) {
+  const auto text = read_script_text(options);
+  if (!text) return tl::unexpected{report(text.error())};
+  auto program = script::parse(*text, dialect_of(options));
+  if (program) return *std::move(program);
+  print_diagnostic(program.error().front(), options.file);
+  return tl::unexpected{Exit::kUsage};
+}
+
+void print_diagnostic(const script::Diagnostic& diagnostic, const std::string& file) {
+  fmt::print(stderr, "{}\n", describe(diagnostic, file));
+}
+
+void add_planning_options(CLI::App& app, PlanningOptions& options) {
+  app.add_option("--on-singularity", options.on_singularity,
+                 "a line on which the tool would be lost: refuse it, stop in front of the place, "
+                 "or try to go on; the commander always tries")
+      ->check(CLI::IsMember({"refuse", "stop", "try"}))
+      ->capture_default_str();
+  std::vector<std::string> names;
+  for (const auto& convention : arm::conventions()) names.emplace_back(convention.name);
+  app.add_option("--orientation", options.orientation, "what RX, RY and RZ of a pose mean")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  app.add_option("--loops", options.loops, "passes of a program that ends with Loop()")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
+      ->capture_default_str();
+  app.add_option("--gripper-id", options.gripper_id, "CAN node of the gripper")
+      ->check(CLI::Range(0, 15))
+      ->capture_default_str();
+  app.add_option("--from", options.from,
+                 "where the plan begins: standby; power-up, all zeros, where joints have no limits "
+                 "yet; or six numbers of steps")
+      ->type_name("PLACE")
+      ->capture_default_str();
+}
+
+Outcome<Planning> parse_planning(const PlanningOptions& options) {
+  using parol6::planning::OnSingularity;
+  Planning planning;
+  auto& settings = planning.settings;
+  settings.planner.on_singularity = options.on_singularity == "refuse" ? OnSingularity::kRefuse
+                                    : options.on_singularity == "try"  ? OnSingularity::kTry
+                                                                       : OnSingularity::kStop;
+  const auto conventions = arm::conventions();
+  settings.planner.convention =
+      std::ranges::find(conventions, options.orientation, &arm::ConventionName::name)->convention;
+  settings.passes = options.loops;
+  settings.gripper_id = static_cast<std::uint8_t>(options.gripper_id);
+  if (options.from == "power-up") {
+    settings.planner.limits = parol6::planning::LimitCheck::kIgnored;
+  } else if (options.from == "standby") {
+    planning.start = parol6::planning::standby();
+  } else if (auto start = parse_places(options.from)) {
+    planning.start = *start;
+  } else {
+    return problem(ErrorCode::kBadValue, "--from " + options.from,
+                   "write standby, power-up, or six numbers of steps as in 0,-32000,57905,0,0,0");
+  }
+  return planning;
+}
+
+}  // namespace armjig::cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/program.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/device.hpp"
+#include "harness/core/version.hpp"
+
+namespace armjig::cli {
+namespace {
+
+constexpr std::array kCommands{add_conformance, add_console, add_decode,    add_devices,
+                               add_doctor,      add_emulate, add_kin,       add_lab,
+                               add_trace,       add_watch,   add_completion};
+
+constexpr auto kDescription =
+    "Test jig for robot-arm controllers and the programs that drive them.\n"
+    "\n"
+    "  armjig emulate DEVICE                          an emulated device, for your program\n"
+    "  armjig conformance DEVICE --target emulated:   is that device right?\n"
+    "  armjig trace verify captures                   replay recordings of real devices\n"
+    "  armjig decode DEVICE --file session.bin        what do these bytes mean?\n"
+    "  armjig console DEVICE --target emulated:       drive it by hand\n";
+
+constexpr auto kFooter =
+    "Exit codes: 0 passed, 1 findings, 2 usage, 3 target or link, 4 nothing ran, 70 our bug, 130 "
+    "interrupted.\n"
+    "'armjig SUBCOMMAND --help' has examples.";
+
+/// In the list of subcommands, only the first line of each description: its examples belong to its
+/// own help.
+class FirstLines final : public CLI::Formatter {
+ public:
+  std::string make_subcommand(const CLI::App* sub) const override {
+    const auto description = sub->get_description();
+    return fmt::format("  {:<12} {}\n", sub->get_name(),
+                       description.substr(0, description.find('\n')));
+  }
+};
+
+bool is_option(std::string_view word) { return word.starts_with('-'); }
+
+bool has_subcommand(const CLI::App& app, std::string_view name) {
+  return !app.get_subcommands([name](const CLI::App* sub) { return sub->get_name() == name; })
+              .empty();
+}
+
+std::string names(const CLI::App& app) {
+  std::string names;
+  for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names += ' ' + sub->get_name();
+  }
+  return names;
+}
+
+/// The command as far as it was understood: `armjig trace verify`.
+std::string call_of(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app.get_name()
+                        : fmt::format("{} {}", app.get_name(), call_of(*chosen.front()));
+}
+
+/// CLI11's own codes start at 100; ours are fixed.
+Exit exit_of(const CLI::App& app, const CLI::ParseError& error) {
+  const bool is_help = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+  if (is_help) {
+    app.exit(error);
+    return Exit::kPassed;
+  }
+  fmt::print(stderr, "armjig: {}; see '{} --help'\n", error.what(), call_of(app));
+  return Exit::kUsage;
+}
+
+/// An entry that is not complete is found out before a subcommand meets it.
+void check(Devices devices) {
+  for (const auto& device : devices) {
+    const auto missing = missing_parts(device);
+    if (!missing.empty()) {
+      throw std::logic_error{
+          fmt::format("the entry of '{}' lacks {}", device.name, missing.front())};
+    }
+  }
+}
+
+Exit run(int argc, char** argv, Devices devices) {
+  check(devices);
+  CLI::App app{with_example(kDescription, devices), "armjig"};
+  app.footer(kFooter);
+  app.formatter(std::make_shared<FirstLines>());
+  app.set_version_flag("--version", std::string{"armjig "} + kVersion);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  Action action;
+  for (const auto add : kCommands) add(app, devices, action);
+  for (const auto& device : devices) {
+    for (const auto add : device.commands) add(app, device, action);
+  }
+  if (argc > 1 && !is_option(argv[1]) && !has_subcommand(app, argv[1])) {
+    fmt::print(stderr, "armjig: there is no subcommand '{}'; there are:{}\n", argv[1], names(app));
+    return Exit::kUsage;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return exit_of(app, error);
+  }
+  return action();
+}
+
+}  // namespace
+
+Exit report(const Problem& problem) {
+  fmt::print(stderr, "armjig: {}\n", describe(problem));
+  switch (problem.code) {
+    case ErrorCode::kBadHex:
+    case ErrorCode::kOddHex:
+    case ErrorCode::kBadTarget:
+    case ErrorCode::kUnknownDevice:
+    case ErrorCode::kUnknownOption:
+    case ErrorCode::kBadValue:
+    case ErrorCode::kMalformed:
+    case ErrorCode::kUnsupported:
+    case ErrorCode::kCannotRead:
+      return Exit::kUsage;
+    default:
+      return Exit::kRig;
+  }
+}
+
+void add_device_argument(CLI::App& command, std::string& device, Devices devices) {
+  command.add_option("DEVICE", device, "which one: " + names_of(devices))
+      ->required()
+      ->type_name("");
+}
+
+std::string with_example(std::string text, Devices devices) {
+  constexpr std::string_view kPlace = "DEVICE";
+  const std::string name{devices.empty() ? "none" : devices.front().name};
+  for (auto at = text.find(kPlace); at != std::string::npos; at = text.find(kPlace, at)) {
+    text.replace(at, kPlace.size(), name);
+  }
+  return text;
+}
+
+int run_program(int argc, char** argv, Devices devices) {
+  try {
+    return static_cast<int>(run(argc, argv, devices));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "armjig: internal error: {}; please report it\n", error.what());
+    return static_cast<int>(Exit::kBug);
+  }
+}
+
+}  // namespace armjig::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "conformance/kinovazed/chapters.hpp"
+#include "conformance/kinovazed/server_bench.hpp"
+#include "conformance/kinovazed/ways.hpp"
+#include "conformance/kinovazed/wording.hpp"
+
+/// What the files in cases/ begin with.
+namespace armjig::kinovazed::conformance {
+
+using namespace std::chrono_literals;
+
+}  // namespace armjig::kinovazed::conformance

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "conformance/bench.hpp"
+#include "harness/rig/rig.hpp"
+#include "harness/wire/dissector.hpp"
+
+namespace armjig {
+
+/// A message as evidence, with its time.
+[[nodiscard]] std::string line_of(const Message& message);
+
+/// What benches on all three kinds of ports do with their rig.
+template <class Port>
+class PortBench : public Bench {
+ public:
+  explicit PortBench(Rig<Port> rig) : rig_{std::move(rig)} {}
+
+  /// Does at the device what its link cannot: a switch, an input, the power. Skips the case where
+  /// nobody can.
+  void touch(std::string_view input, std::int64_t value) {
+    if (is_deaf() || port().touch(input, value)) return;
+    skip(std::string{"needs a hand at the device, to set "}.append(input));
+  }
+
+  [[nodiscard]] Instant now() const override { return port().now(); }
+
+ protected:
+  /// Telling the time changes nothing.
+  [[nodiscard]] Port& port() const noexcept { return rig_.port(); }
+  [[nodiscard]] const Rig<Port>& rig() const noexcept { return rig_; }
+
+  /// Whether something was done at the port. What the guard forbids skips the case, for the device
+  /// has not done anything wrong.
+  template <class Result>
+  bool is_done(const Result& result) {
+    if (result) return true;
+    if (result.error().code != ErrorCode::kForbidden) {
+      lose_link(result.error());
+    } else {
+      const auto refusal = rig_.last_refusal();
+      skip(refusal ? refusal->reason : "the guard does not allow it");
+    }
+    return false;
+  }
+
+ private:
+  mutable Rig<Port> rig_;
+};
+
+/// One whose evidence is what a dissector makes of the last few messages.
+template <class Port>
+class DissectedBench : public PortBench<Port> {
+ public:
+  DissectedBench(Rig<Port> rig, std::unique_ptr<Dissector> dissector, std::size_t remembered)
+      : PortBench<Port>{std::move(rig)}, dissector_{std::move(dissector)}, most_{remembered} {}
+
+  [[nodiscard]] std::string last_exchange() const override {
+    std::string text;
+    for (const auto& message : exchange_) text += line_of(message);
+    return text;
+  }
+
+ protected:
+  void forget_exchange() override { exchange_.clear(); }
+
+  /// The messages that are complete with these bytes, which pass now.
+  std::vector<Message> dissect(Direction direction, Bytes bytes) {
+    std::vector<Message> messages;
+    dissector_->feed(direction, this->now(), bytes, messages);
+    for (const auto& message : messages) {
+      exchange_.push_back(message);
+      if (exchange_.size() > most_) exchange_.pop_front();
+    }
+    return messages;
+  }
+
+ private:
+  std::unique_ptr<Dissector> dissector_;
+  std::size_t most_;
+  std::deque<Message> exchange_;
+};
+
+}  // namespace armjig

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <linux/i2c.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <thread>
+
+#include "emulators/host/host.hpp"
+#include "emulators/memory/hosted.hpp"
+#include "harness/core/bytes.hpp"
+#include "harness/core/time.hpp"
+#include "harness/link/bus_port.hpp"
+
+namespace armjig {
+
+/// Is told of every message that somebody on a bus acknowledged, when it is over: the byte with
+/// address and direction, then the data bytes that were acknowledged. Bytes until it returns. One
+/// thread calls it, not that of the one who listens; times never decrease.
+using BusListener = std::function<void(Instant time, Bytes message)>;
+
+/// An emulated bus as the kernel would show it: transactions and SMBus commands in, error numbers
+/// out. It lives on the wall clock (`Host`), in a thread of its own; a transaction takes as long as
+/// its bits do. All functions may be called from any thread; one transaction runs at a time.
+class I2cAdapter {
+ public:
+  /// What it can do, as `I2C_FUNCS` tells it.
+  static constexpr unsigned long kFunctions =
+      I2C_FUNC_I2C | I2C_FUNC_SMBUS_QUICK | I2C_FUNC_SMBUS_BYTE | I2C_FUNC_SMBUS_BYTE_DATA |
+      I2C_FUNC_SMBUS_WORD_DATA | I2C_FUNC_SMBUS_PROC_CALL | I2C_FUNC_SMBUS_WRITE_BLOCK_DATA |
+      I2C_FUNC_SMBUS_I2C_BLOCK;
+
+  /// An empty listener hears nothing. Problems: those of `Host::open`.
+  [[nodiscard]] static Outcome<std::unique_ptr<I2cAdapter>> open(std::unique_ptr<HostedBus> bus,
+                                                                 BusListener listener = {},
+                                                                 HostOptions options = {});
+  ~I2cAdapter();
+
+  /// For its inputs and statistics.
+  [[nodiscard]] Host& host() noexcept { return host_; }
+
+  /// 0 or an error number: `ENXIO` for a refused address, `EIO` for a refused byte, `EAGAIN` for
+  /// lost arbitration or a line that is held, `ETIMEDOUT`.
+  [[nodiscard]] int transfer(std::span<const BusMessage> messages);
+
+  /// An SMBus command made of transactions; `size` is one of `I2C_SMBUS_QUICK` and so on. Also
+  /// `EOPNOTSUPP`, `EINVAL` for a wrong length of a block.
+  [[nodiscard]] int smbus(BusAddress address, Access access, std::uint8_t command,
+                          std::uint32_t size, i2c_smbus_data& data);
+
+ private:
+  I2cAdapter(Host host, BusListener listener);
+
+  Host host_;
+  BusListener listener_;
+  std::jthread thread_;  ///< lets the devices live, also while nobody talks to them
+};
+
+}  // namespace armjig

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/rig/real_target.hpp"
+
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "harness/link/i2c_dev.hpp"
+#include "harness/link/i2c_tiny_usb.hpp"
+#include "harness/link/real_streams.hpp"
+#include "harness/link/serial_stream.hpp"
+#include "harness/link/tcp_session.hpp"
+
+namespace armjig {
+namespace {
+
+Outcome<std::unique_ptr<StreamPort>> open_serial_target(const Target& target,
+                                                        const SerialLine& line) {
+  const auto address = parse_serial_address(target.address, line);
+  if (!address) return tl::unexpected{address.error()};
+  return open_serial(*address);
+}
+
+/// The board's serial port, if there is just one of its kind.
+Outcome<std::unique_ptr<StreamPort>> open_usb_target(const Target& target, const SerialLine& line) {
+  const auto id = parse_usb_id(target.address);
+  if (!id) return bad_target(target.text, "write usb:VID:PID, for example usb:0483:5740");
+  auto ports = list_serial_ports();
+  if (!ports) return tl::unexpected{ports.error()};
+  std::erase_if(*ports, [&id](const SerialPort& port) { return port.usb != *id; });
+  if (ports->empty()) {
+    return problem(ErrorCode::kNotFound, target.text,
+                   "is the board plugged in and switched on? 'armjig devices' lists what is");
+  }
+  if (ports->size() == 1) return open_serial({ports->front().path, line});
+  std::string all;
+  for (const auto& port : *ports) {
+    all += fmt::format("{}serial:{}", all.empty() ? "" : " or ", port.path);
+  }
+  return bad_target(target.text, "there are several of them: write " + all);
+}
+
+}  // namespace
+
+template <>
+Outcome<std::unique_ptr<StreamPort>> open_target(const Target& target, const SerialLine& line) {
+  if (target.scheme == "pty") return open_pty(target.address, line);
+  if (target.scheme == "serial") return open_serial_target(target, line);
+  if (target.scheme == "usb") return open_usb_target(target, line);
+  if (target.scheme == "tcp") return open_tcp_stream(target.address);
+  return bad_target(target.text,
+                    "write emulated:, serial:PATH, usb:VID:PID, pty:PATH or tcp:HOST:PORT; 'armjig "
+                    "devices' lists what is plugged in");
+}
+
+template <>
+Outcome<std::unique_ptr<SessionSource>> open_target(const Target& target,
+                                                    const SerialLine& /*line*/) {
+  if (target.scheme == "tcp") return open_tcp_server(target.address);
+  return problem(ErrorCode::kBadTarget, target.text,
+                 "a server has connections: write emulated: or tcp:HOST:PORT");
+}
+
+template <>
+Outcome<std::unique_ptr<BusPort>> open_target(const Target& target, const SerialLine& /*line*/) {
+  if (target.scheme == "i2c") return open_i2c_dev(target.address);
+  if (target.scheme == "i2c-tiny-usb") return open_i2c_tiny_usb(target.address);
+  return bad_target(target.text, "a bus is written as emulated:, i2c:/dev/i2c-N or i2c-tiny-usb:");
+}
+
+}  // namespace armjig
