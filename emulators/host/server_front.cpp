@@ -27,7 +27,7 @@ class ServerFront final : public Front {
     }
     auto listener = listen_on_tcp(
         loop_.context(), *options.tcp,
-        {.on_client = [this](std::shared_ptr<TcpConnection> client) { admit(std::move(client)); },
+        {.on_client = [this](const std::shared_ptr<TcpConnection>& client) { admit(client); },
          .has_room = [this] { return clients_.size() < kMostClients; },
          .on_log = [this](std::string_view line) { loop_.log(line); }});
     if (!listener) return tl::unexpected{listener.error()};
