@@ -72,7 +72,7 @@ class Bench {
   void skip(std::string reason);
   void leave_open(std::string reason);  ///< inconclusive
 
-  /// What comes next is about this: it stands behind every expectation until it is said anew.
+  /// What comes next is about this: it stands after every expectation until it is said again.
   void about(std::string what) { about_ = std::move(what); }
   void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
 
