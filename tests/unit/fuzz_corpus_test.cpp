@@ -31,6 +31,7 @@
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_trace_reader
 #include "fuzz/trace_reader.cpp"
+#include "tests/unit/support/source_dir.hpp"
 #undef LLVMFuzzerTestOneInput
 // NOLINTEND(bugprone-suspicious-include)
 
@@ -43,8 +44,7 @@ using Target = int (*)(const std::uint8_t*, std::size_t);
 
 void run_corpus(Target target, const char* name) {
   std::vector<fs::path> files;
-  for (const auto& entry :
-       fs::directory_iterator{fs::path{ARMJIG_SOURCE_DIR} / "fuzz/corpus" / name}) {
+  for (const auto& entry : fs::directory_iterator{fs::path{source_dir()} / "fuzz/corpus" / name}) {
     files.push_back(entry.path());
   }
   ASSERT_FALSE(files.empty());

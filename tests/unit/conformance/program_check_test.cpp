@@ -11,6 +11,7 @@
 #include "conformance/parol6/host/check.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "harness/capture/trace.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig {
 namespace {
@@ -78,8 +79,7 @@ TEST(ProgramCheck, PassesNothingThatDidNotRun) {
 
 /// What the recorded host broke.
 std::vector<std::string> broken_in(const std::string& name) {
-  const auto trace =
-      read_trace(std::string{ARMJIG_SOURCE_DIR} + "/captures/parol6/" + name + ".jsonl");
+  const auto trace = read_trace(source_dir() + "/captures/parol6/" + name + ".jsonl");
   EXPECT_TRUE(trace.has_value()) << name;
   const auto checker = parol6_entry().make({});
   for (const auto& event : trace->events) {

@@ -9,13 +9,14 @@
 
 #include "conformance/parol6/chapters.hpp"
 #include "conformance/parol6/host/check.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig::parol6::programs {
 namespace {
 
 /// The page with every run of blanks and line ends as one blank.
 std::string page_in_one_line() {
-  std::ifstream in{std::string{ARMJIG_SOURCE_DIR} + "/docs/spec/parol6.md", std::ios::binary};
+  std::ifstream in{source_dir() + "/docs/spec/parol6.md", std::ios::binary};
   const std::string text{std::istreambuf_iterator<char>{in}, {}};
   return std::regex_replace(text, std::regex{"\\s+"}, " ");
 }

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/unit/support/source_dir.hpp"
+
 namespace armjig {
 namespace {
 
@@ -91,7 +93,7 @@ struct Line {
 /// The lines of all sources that the pattern matches as a whole.
 std::vector<Line> lines_of_sources(const char* pattern) {
   const std::regex wanted{pattern};
-  const fs::path root{ARMJIG_SOURCE_DIR};
+  const fs::path root{source_dir()};
   std::vector<Line> lines;
   for (const auto* const top : {"harness", "emulators", "conformance", "cli"}) {
     for (const auto& entry : fs::recursive_directory_iterator{root / top}) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "conformance/kinovazed/suite.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig {
 namespace {
@@ -25,11 +26,9 @@ std::string read(const fs::path& path) {
   return {std::istreambuf_iterator<char>{in}, {}};
 }
 
-fs::path source_dir() { return ARMJIG_SOURCE_DIR; }
-
 std::string page() {
-  return std::regex_replace(read(source_dir() / "docs/spec/kinovazed.md"), std::regex{R"(\s+)"},
-                            " ");
+  return std::regex_replace(read(fs::path{source_dir()} / "docs/spec/kinovazed.md"),
+                            std::regex{R"(\s+)"}, " ");
 }
 
 /// All first groups of the pattern in the text.
@@ -72,7 +71,7 @@ TEST(KinovazedPage, HasTheSentencesOfTheCatalogueAndNoOthers) {
 TEST(KinovazedPage, DocumentsEveryRequirementThatTheSourcesCite) {
   std::set<std::string> cited;
   for (const auto& entry :
-       fs::recursive_directory_iterator{source_dir() / "emulators" / "kinovazed"}) {
+       fs::recursive_directory_iterator{fs::path{source_dir()} / "emulators" / "kinovazed"}) {
     if (!entry.is_regular_file()) continue;
     for (const auto& comment : matches(read(entry.path()), R"((//[^\n]*kinovazed\.[^\n]*))")) {
       cited.merge(

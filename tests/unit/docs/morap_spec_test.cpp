@@ -10,13 +10,14 @@
 #include <string>
 
 #include "conformance/morap/suite.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig::morap::conformance {
 namespace {
 
 /// The page with every run of blanks and line ends as one blank.
 std::string page_in_one_line() {
-  std::ifstream in{std::string{ARMJIG_SOURCE_DIR} + "/docs/spec/morap.md", std::ios::binary};
+  std::ifstream in{source_dir() + "/docs/spec/morap.md", std::ios::binary};
   const std::string text{std::istreambuf_iterator<char>{in}, {}};
   return std::regex_replace(text, std::regex{R"(\s+)"}, " ");
 }

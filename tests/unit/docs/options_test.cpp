@@ -11,6 +11,7 @@
 #include "emulators/kinovazed/options.hpp"
 #include "emulators/morap/options.hpp"
 #include "emulators/parol6/options.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig {
 namespace {
@@ -27,7 +28,7 @@ std::string with_rows(const std::string& page, const std::string& device,
 }
 
 TEST(CommandLinePage, HasTheOptionsOfEmulatedDevices) {
-  const auto* const path = ARMJIG_SOURCE_DIR "/docs/cli.md";
+  const auto path = source_dir() + "/docs/cli.md";
   std::ifstream in{path, std::ios::binary};
   const std::string page{std::istreambuf_iterator<char>{in}, {}};
   auto wanted = with_rows(page, "parol6", parol6::emulation::options());

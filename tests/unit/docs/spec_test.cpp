@@ -16,6 +16,7 @@
 
 #include "conformance/parol6/suite.hpp"
 #include "harness/wire/parol6/fields.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig {
 namespace {
@@ -27,9 +28,7 @@ std::string read(const fs::path& path) {
   return {std::istreambuf_iterator<char>{in}, {}};
 }
 
-fs::path source_dir() { return ARMJIG_SOURCE_DIR; }
-
-std::string parol6_page() { return read(source_dir() / "docs/spec/parol6.md"); }
+std::string parol6_page() { return read(fs::path{source_dir()} / "docs/spec/parol6.md"); }
 
 /// All first groups of the pattern in the text.
 std::set<std::string> matches(const std::string& text, const char* pattern) {
@@ -49,7 +48,7 @@ std::set<std::string> documented() {
 std::set<std::string> cited() {
   std::set<std::string> ids;
   for (const auto* room : {"harness", "emulators", "conformance"}) {
-    for (const auto& entry : fs::recursive_directory_iterator{source_dir() / room}) {
+    for (const auto& entry : fs::recursive_directory_iterator{fs::path{source_dir()} / room}) {
       const auto extension = entry.path().extension();
       if (extension != ".hpp" && extension != ".cpp") continue;
       const auto text = read(entry.path());

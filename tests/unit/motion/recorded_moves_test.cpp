@@ -10,6 +10,7 @@
 #include "harness/motion/parol6/planner.hpp"
 #include "harness/wire/parol6/frame.hpp"
 #include "tests/unit/support/bytes.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig::parol6::planning {
 namespace {
@@ -72,7 +73,7 @@ Plan planned(const RecordedMove& recorded) {
 }
 
 void expect_recorded(const std::string& name, const std::vector<RecordedMove>& moves) {
-  const auto trace = read_trace(ARMJIG_SOURCE_DIR "/captures/parol6/" + name);
+  const auto trace = read_trace(source_dir() + "/captures/parol6/" + name);
   ASSERT_TRUE(trace.has_value()) << describe(trace.error());
   const auto recorded = moves_in(*trace);
   ASSERT_EQ(recorded.size(), moves.size());

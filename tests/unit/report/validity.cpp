@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "tests/unit/support/source_dir.hpp"
+
 namespace armjig::test {
 namespace {
 
@@ -57,7 +59,7 @@ class TemporaryFile {
 ::testing::AssertionResult is_valid_junit(std::string_view xml) {
   const TemporaryFile file{xml};
   return run(fmt::format("xmllint --noout --nonet --schema '{}/tests/data/junit.xsd' '{}'",
-                         ARMJIG_SOURCE_DIR, file.path()),
+                         source_dir(), file.path()),
              "libxml2-utils");
 }
 
@@ -65,7 +67,7 @@ class TemporaryFile {
   const TemporaryFile file{json};
   // Debian's own Python, because another one has no python3-jsonschema.
   return run(fmt::format("/usr/bin/python3 -m jsonschema -i '{}' '{}/{}'", file.path(),
-                         ARMJIG_SOURCE_DIR, schema),
+                         source_dir(), schema),
              "python3-jsonschema");
 }
 

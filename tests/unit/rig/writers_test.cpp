@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/support/source_dir.hpp"
+
 namespace armjig {
 namespace {
 
@@ -53,7 +55,7 @@ struct Source {
 const std::vector<Source>& sources() {
   static const auto all = [] {
     std::vector<Source> found;
-    const fs::path root{ARMJIG_SOURCE_DIR};
+    const fs::path root{source_dir()};
     for (const auto* room : kRooms) {
       for (const auto& entry : fs::recursive_directory_iterator{root / room}) {
         const auto extension = entry.path().extension();
@@ -233,7 +235,7 @@ TEST(Writers, TheSearchFindsWhatIsThere) {
 TEST(Writers, TheOnlyWayToARigIsTheOneThatGuards) {
   // Rig::open, step by step: what was opened goes into a guard unless it is emulated, and nothing
   // after that takes it out again.
-  const auto code = without_comments(read(fs::path{ARMJIG_SOURCE_DIR} / "harness/rig/rig.cpp"));
+  const auto code = without_comments(read(fs::path{source_dir()} / "harness/rig/rig.cpp"));
   const auto opened = code.find("port = open_port(");
   const auto asked = code.find("if (!options.target.is_emulated())");
   const auto guarded = code.find("guard_port(wiring, std::move(rig.port_)");

@@ -23,6 +23,7 @@
 #include "harness/script/schedule.hpp"
 #include "tests/unit/report/validity.hpp"
 #include "tests/unit/script/programs.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig::script {
 namespace {
@@ -68,7 +69,7 @@ std::string read(const fs::path& path) {
 
 std::vector<std::string> examples() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator{ARMJIG_SOURCE_DIR "/harness/script/examples"}) {
+  for (const auto& entry : fs::directory_iterator{source_dir() + "/harness/script/examples"}) {
     names.push_back(entry.path().stem().string());
   }
   std::ranges::sort(names);
@@ -78,8 +79,7 @@ std::vector<std::string> examples() {
 class Example : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    const auto path =
-        fs::path{ARMJIG_SOURCE_DIR "/harness/script/examples"} / (GetParam() + ".rbt");
+    const auto path = fs::path{source_dir() + "/harness/script/examples"} / (GetParam() + ".rbt");
     auto parsed = parse(read(path), Dialect::kDocumented);
     ASSERT_TRUE(parsed.has_value()) << describe(parsed.error().front(), path.string());
     program_ = *std::move(parsed);

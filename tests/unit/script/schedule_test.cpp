@@ -13,6 +13,7 @@
 #include "harness/wire/parol6/joints.hpp"
 #include "tests/unit/script/programs.hpp"
 #include "tests/unit/support/bytes.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig::script {
 namespace {
@@ -35,7 +36,7 @@ std::string move_to(const std::array<int, 6>& places, std::string_view arguments
 /// All that a host sent in a recording, from the first frame that carries `from_command` on.
 std::vector<std::vector<std::byte>> sent_in(const std::string& name, parol6::Command from_command) {
   constexpr std::size_t kCommandByte = 40;
-  const auto trace = read_trace(ARMJIG_SOURCE_DIR "/captures/parol6/" + name);
+  const auto trace = read_trace(source_dir() + "/captures/parol6/" + name);
   if (!trace) {
     ADD_FAILURE() << describe(trace.error());
     return {};

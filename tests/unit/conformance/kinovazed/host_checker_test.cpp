@@ -20,6 +20,7 @@
 #include "emulators/memory/in_memory.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/drive/kinovazed/client.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig::kinovazed::programs {
 namespace {
@@ -334,7 +335,7 @@ std::set<std::string> broken_in(const Trace& trace) {
 }
 
 Trace recording(const std::string& name) {
-  return *read_trace(std::string{ARMJIG_SOURCE_DIR} + "/captures/kinovazed/" + name + ".jsonl");
+  return *read_trace(source_dir() + "/captures/kinovazed/" + name + ".jsonl");
 }
 
 /// Most of the recorded clients are good, others are wrong in the ways that they are named for.
@@ -391,7 +392,7 @@ bool is_of_state(std::string_view requirement) {
 
 /// The matrix of recordings has each command in each state.
 TEST(RecordedClients, AreBlamedForTheStateWhereTheServerRejected) {
-  const auto paths = *find_traces({std::string{ARMJIG_SOURCE_DIR} + "/captures/kinovazed/matrix"});
+  const auto paths = *find_traces({source_dir() + "/captures/kinovazed/matrix"});
   ASSERT_GT(paths.size(), 50U);
   for (const auto& path : paths) {
     const auto trace = *read_trace(path);

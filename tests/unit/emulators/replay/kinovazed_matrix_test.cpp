@@ -7,6 +7,8 @@
 #include <iterator>
 #include <string>
 
+#include "tests/unit/support/source_dir.hpp"
+
 namespace armjig::kinovazed::replay {
 namespace {
 
@@ -27,7 +29,7 @@ std::string changed(std::string text, std::string_view from, std::string_view to
 }
 
 TEST(KinovaMatrix, OfTheRecordingsIsTheEmulatorsInEveryCell) {
-  std::ifstream in{ARMJIG_SOURCE_DIR "/captures/kinovazed/state-command-matrix.json"};
+  std::ifstream in{source_dir() + "/captures/kinovazed/state-command-matrix.json"};
   const auto verdict = verify_matrix(std::string{std::istreambuf_iterator<char>{in}, {}}, "table");
   ASSERT_TRUE(verdict);
   EXPECT_GT(verdict->cells, 80U);

@@ -7,6 +7,7 @@
 
 #include "emulators/replay/kinovazed_rules.hpp"
 #include "harness/wire/kinovazed/dissector.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig::kinovazed::replay {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using Events = std::vector<TraceEvent>;
 
 TEST(KinovaRecordings, AreWhatTheServerDoes) {
-  const auto files = find_traces({ARMJIG_SOURCE_DIR "/captures/kinovazed"});
+  const auto files = find_traces({source_dir() + "/captures/kinovazed"});
   ASSERT_TRUE(files);
   ASSERT_GE(files->size(), 177U);
   for (const auto& file : *files) {

@@ -12,6 +12,7 @@
 #include "emulators/replay/parol6.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/wire/parol6/dissector.hpp"
+#include "tests/unit/support/source_dir.hpp"
 
 namespace armjig {
 namespace {
@@ -20,7 +21,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 
 constexpr Replay kReplay{.run = parol6::replay::replay};
-const std::string kCaptures = ARMJIG_SOURCE_DIR "/captures/parol6";
+const std::string kCaptures = source_dir() + "/captures/parol6";
 
 /// All recordings; none if they cannot be found, which a test of its own reports.
 std::vector<std::string> recordings() {
