@@ -16,6 +16,7 @@ constexpr std::size_t kPositionPlace = 40;
 constexpr std::size_t kSpeedPlace = 104;
 constexpr std::size_t kRatePlace = 2;
 constexpr std::size_t kIntegralPlace = 58;
+constexpr std::size_t kStoredSetSize = 62;
 
 constexpr std::array kMotorFloats{
     &MotorConstants::resistance,      &MotorConstants::inductance,
@@ -60,6 +61,27 @@ void store_set(std::span<std::byte> out, const ControllerSet& set) noexcept {
 }
 
 }  // namespace
+
+ReadBack read_back(const ControllerSet& set) noexcept {
+  std::array<std::byte, kStoredSetSize> memory{};
+  store_set(memory, set);
+  ReadBack bytes;
+  auto rest = bytes.extend(wire_size(set));
+  const auto send = [&](std::size_t place, std::size_t size) {
+    const auto known = Bytes{memory}.subspan(place);
+    std::ranges::copy(known.first(std::min(size, known.size())), rest.begin());
+    rest = rest.subspan(size);
+  };
+  send(0, 1);
+  send(kRatePlace, 2);
+  for (const auto& [filter, place] : kFilters) {
+    send(place, 1);
+    send(place + 2, std::size_t{4} * (set.*filter).count);
+  }
+  send(kIntegralPlace, 4);
+  rest[0] = std::byte{checksum(bytes.view().first(bytes.size() - 1))};
+  return bytes;
+}
 
 Eeprom decode_eeprom(std::span<const std::byte, kEepromSize> image) noexcept {
   const Bytes in{image};

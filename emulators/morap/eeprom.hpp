@@ -34,6 +34,13 @@ struct Eeprom {
   ControllerSet speed;
 };
 
+/// What a node sends of a set, with its checksum. It trusts the counts: one above four leads it on
+/// into the fields behind the coefficients, as they lie in EEPROM and memory
+/// (recording random/mini-count5-active). Zeros stand for what is behind the set.
+inline constexpr std::size_t kLongestReadBack = kSmallestSetSize + std::size_t{3} * 4 * UINT8_MAX;
+using ReadBack = BoundedBytes<kLongestReadBack>;
+[[nodiscard]] ReadBack read_back(const ControllerSet& set) noexcept;
+
 /// 83 words, low byte first.
 inline constexpr std::size_t kEepromSize = 166;
 using EepromImage = std::array<std::byte, kEepromSize>;

@@ -19,6 +19,18 @@ bool has_count(const ControllerSet& set, auto is_it) noexcept {
 
 constexpr auto is_above_four = [](std::uint8_t count) { return count > kMostCoefficients; };
 
+/// Coefficients above the counts of `set` stay as they are: recording random/mini-tune-leftover.
+void write_over(ControllerSet& staging, const ControllerSet& set) noexcept {
+  staging.kind = set.kind;
+  staging.rate_hz = set.rate_hz;
+  staging.integral = set.integral;
+  for (const auto filter : {&ControllerSet::d, &ControllerSet::c, &ControllerSet::f}) {
+    (staging.*filter).count = (set.*filter).count;
+    std::copy_n((set.*filter).values.begin(), (set.*filter).count,
+                (staging.*filter).values.begin());
+  }
+}
+
 float limited(float value, float limit) noexcept {
   if (value > limit) return limit;
   return value < -limit ? -limit : value;
@@ -64,9 +76,10 @@ std::byte Node::read(Instant time) noexcept {
     case ReadKind::kControllerSet: {
       const auto& set =
           ram_.selected == CommandId::kReadPositionSet ? ram_.position_set : ram_.speed_set;
-      if (has_count(set, is_above_four)) return {};
-      const auto bytes = encode(set);
-      return place < bytes.size() ? bytes.view()[place] : std::byte{};
+      const auto byte_of = [place](const auto& bytes) {
+        return place < bytes.size() ? bytes.view()[place] : std::byte{};
+      };
+      return has_count(set, is_above_four) ? byte_of(read_back(set)) : byte_of(encode(set));
     }
     case ReadKind::kFloat:
       break;
@@ -224,7 +237,7 @@ void Node::handle_tune(std::byte byte) noexcept {
   const auto set = tune(request, setup_.eeprom.motor, setup_.profile);
   ram_.programming = set ? ProgrammingStatus::kSuccess : ProgrammingStatus::kFailure;
   if (!set) return;
-  ram_.staging = *set;
+  write_over(ram_.staging, *set);
   await_tick(Pending::kStaged);
 }
 

@@ -24,7 +24,7 @@ enum class Undefined : std::uint8_t {
   kOverlongFloat,   ///< a payload byte behind the fourth goes to other memory
   kReadPastFloat,   ///< a byte behind the fourth comes from other memory; read here as 0
   kEmptyFilter,     ///< a loop runs with a count of 0 and shifts memory; none is shifted here
-  kCountAboveFour,  ///< a refused count became active; four are used here
+  kCountAboveFour,  ///< a loop runs with a refused count that became active; four are used here
   kZeroRate,        ///< a division by 0; the slowest rate here
   kConversion,      ///< a number that does not fit an integer, or is none
 };

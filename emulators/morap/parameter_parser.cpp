@@ -25,11 +25,13 @@ ParameterParser::Verdict ParameterParser::step(std::byte byte, ControllerSet& st
       return Verdict::kGoesOn;
     case Part::kRate:
       if (place_ == 0) {
-        staging.rate_hz = std::to_integer<std::uint8_t>(byte);
+        staging.rate_hz = static_cast<std::uint16_t>((staging.rate_hz & 0xFF00U) |
+                                                     std::to_integer<unsigned>(byte));
         ++place_;
         return Verdict::kGoesOn;
       }
-      staging.rate_hz |= static_cast<std::uint16_t>(std::to_integer<unsigned>(byte) << 8);
+      staging.rate_hz = static_cast<std::uint16_t>((staging.rate_hz & 0xFFU) |
+                                                   std::to_integer<unsigned>(byte) << 8);
       for (const auto filter : kFilters) (staging.*filter).count = 0;
       next(Part::kCount);
       return Verdict::kGoesOn;

@@ -9,7 +9,7 @@
 namespace armjig::morap::emulation {
 
 /// The node's reader of a parameter message, byte by byte. What it has read of an unfinished
-/// message stays in the set that it writes to (morap.program.shared-staging).
+/// message stays in the set that it writes to, every byte until its own comes.
 class ParameterParser {
  public:
   enum class Verdict : std::uint8_t { kGoesOn, kAccepted, kRefused };

@@ -115,6 +115,53 @@ TEST(MorapNode, FlagsWhatWouldTouchForeignMemory) {
   EXPECT_EQ(desk.node().count_of(Undefined::kConversion), 1U);
 }
 
+/// A set is accepted and waits for its tick; then what `second` is the beginning of comes. The set
+/// that is in use after the tick, read back.
+armjig::test::ByteVector torn_set(std::string_view first, std::string_view second,
+                                  std::size_t size) {
+  Desk desk{setup_of('A')};
+  desk.write(first);
+  desk.write(second);
+  desk.tick();
+  desk.write("8A");
+  return desk.read(size);
+}
+
+TEST(MorapNode, KeepsTheUpperByteOfTheRateUntilItsOwnByteComes) {
+  // Recording random/mini-rate-torn: 0190, then 32.
+  EXPECT_TRUE(same_bytes(torn_set("20 00 90 01 00 00 00 00 00 00 00 6E", "20 00 32", 4),
+                         hex("00 32 01 00")));
+}
+
+TEST(MorapNode, ReadsBackARefusedCountAndGoesOnIntoTheNextField) {
+  // Recording random/mini-count5-active has the first four bytes. In the EEPROM's record, what
+  // follows the four values of d is nc, an unused byte, and half of c[0] = 00 00 00 3F. The sum is
+  // 56 + 674 + 547 + 522 + 675 + 320 = AEA, folded F4, its complement 0B.
+  constexpr std::string_view kExample9 =
+      "20 00 71 02 04 CD CC CC 3D CD CC 4C 3E 9A 99 99 3E CD CC CC 3E 04 00 00 00 3F 9A 99 19 3F "
+      "33 33 33 3F CD CC 4C 3F 04 CD CC CC BD CD CC 4C BE 9A 99 99 BE CD CC CC BE 0A D7 23 3C 7B";
+  EXPECT_TRUE(same_bytes(torn_set(kExample9, "20 00 32 01 05", 32),
+                         hex("00 32 01 05 CD CC CC 3D CD CC 4C 3E 9A 99 99 3E CD CC CC 3E "
+                             "00 00 00 00 00 00 0A D7 23 3C 0B 00")));
+  // With 255, byte 62 is the first behind the record; zeros stand for what is there.
+  const auto longest = torn_set(kExample9, "20 00 32 01 FF", 256);
+  EXPECT_TRUE(same_bytes(Bytes{longest}.subspan(52, 8), hex("CD CC CC BE 0A D7 23 3C")));
+  EXPECT_TRUE(same_bytes(Bytes{longest}.subspan(60, 4), hex("00 00 00 00")));
+}
+
+TEST(MorapNode, LeavesTheCoefficientsThatItDoesNotTune) {
+  // Recording random/mini-tune-leftover: d[2] and d[3] are those of the first message.
+  Desk desk{setup_of('A')};
+  desk.write("20 00 90 01 04 00 00 80 3F 00 00 00 40 00 00 40 40 00 00 80 40 00 00 00 00 00 00 29");
+  desk.tick();
+  desk.write("22 00 CD CC 4C 3E 00 00 10 C1");
+  desk.write("20 00 90 01 04");
+  desk.tick();
+  desk.write("8A");
+  EXPECT_TRUE(same_bytes(desk.read(28), hex("00 90 01 04 36 4B 03 C1 51 3F 14 41 00 00 40 40 "
+                                            "00 00 80 40 00 00 00 00 00 00 FC 00")));
+}
+
 TEST(MorapNode, WithAnUnusableEepromNeverJoinsTheBus) {
   auto setup = setup_of('A');
   EXPECT_TRUE(Node{setup}.acknowledges(0x12));
