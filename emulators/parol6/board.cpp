@@ -79,6 +79,11 @@ std::optional<Instant> Board::next_event() const noexcept {
   return instant(next_pass_);
 }
 
+std::optional<Instant> Board::wakes_at() const noexcept {
+  if (!is_asleep_) return std::nullopt;
+  return instant(next_pass_);
+}
+
 bool Board::is_waiting_for_pass() const noexcept {
   return !bytes_waiting_.empty() || !can_waiting_.empty();
 }

@@ -63,6 +63,10 @@ class Board {
   /// handled.
   [[nodiscard]] std::optional<Instant> next_event() const noexcept;
 
+  /// When the pass ends in whose middle the board sleeps (parol6.demo.sleeps): all that this pass
+  /// sends has that time. None while it is awake.
+  [[nodiscard]] std::optional<Instant> wakes_at() const noexcept;
+
   /// Power off and on: all state but the plant is lost, and for the 0.74 s of the start-up delays
   /// whatever arrives waits. Homed bits go, the outputs too.
   void reboot(Instant time);

@@ -184,6 +184,8 @@ Outcome<Replayed> replay(const Trace& trace) {
     if (is_reaction) replayed.recorded.push_back(event);
   }
   board.advance_to(recording->end);
+  // A pass that had begun is recorded to its end.
+  if (const auto wake = board.wakes_at()) board.advance_to(*wake);
   for (const auto& emission : board.sent()) {
     if (!recording->has_can && std::holds_alternative<CanFrame>(emission.what)) continue;
     replayed.actual.push_back(as_event(emission));

@@ -305,6 +305,18 @@ TEST(Board, AnswersDuringTheDemosSleepWhenItWakes) {
   EXPECT_LE(desk.now - asleep, 2000ms);
 }
 
+TEST(Board, EndsThePassOfTheDemosSleepTwoSecondsAfterItBegan) {
+  Desk desk{board_with_pass(20)};
+  desk.send(command(Command::kDemo));
+  while (counters(desk.board)[2] != 49'812) desk.run(20us);
+  EXPECT_EQ(desk.board.wakes_at(), at(desk.now + 2s));
+  desk.run(1'999'980us);
+  EXPECT_EQ(counters(desk.board)[2], 49'812);
+  desk.run(20us);
+  EXPECT_EQ(counters(desk.board)[2], 49'813);
+  EXPECT_EQ(desk.board.wakes_at(), std::nullopt);
+}
+
 TEST(Board, RunsTheDemoWhileDisabled) {
   Desk desk{board_with_pass(20)};
   desk.hold(command(Command::kDisable), 10ms);
