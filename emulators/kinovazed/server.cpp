@@ -13,7 +13,7 @@ constexpr std::size_t kLogLines = 256;
 
 Server::Server(ArmPort arm, ServerOptions options)
     : options_{std::move(options)},
-      worker_{std::move(arm), options_.behaviour, options_.call_time},
+      worker_{std::move(arm), options_.behaviour, options_.call_time, options_.late_repairs},
       receiver_{options_.behaviour.profile} {
   worker_.start(now_);
 }
@@ -82,7 +82,8 @@ void Server::advance_to(Instant time) {
       if (!restart_ || *restart_ > time) break;
       now_ = *std::exchange(restart_, std::nullopt);
       life_ = Life::kStarting;
-      worker_ = Worker{std::move(worker_.arm()), options_.behaviour, options_.call_time};
+      worker_ = Worker{std::move(worker_.arm()), options_.behaviour, options_.call_time,
+                       options_.late_repairs};
       worker_.start(now_);
     }
     if (turn()) continue;

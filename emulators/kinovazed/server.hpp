@@ -30,6 +30,7 @@ struct ServerOptions {
   Duration call_time = std::chrono::microseconds{600};  ///< of every call to the arm
   RaceOrder race = RaceOrder::kReplyFirst;
   OnDeath on_death = OnDeath::kStay;
+  std::uint32_t late_repairs = 0;  ///< see `Worker`
 };
 
 /// A line that the server writes to its log.
@@ -92,6 +93,7 @@ class Server {
   /// When the server began to listen; none before.
   [[nodiscard]] std::optional<Instant> listening_since() const noexcept { return listening_since_; }
   [[nodiscard]] const ArmPort& arm() const noexcept { return worker_.arm(); }
+  [[nodiscard]] std::uint32_t repair_races() const noexcept { return worker_.repair_races(); }
 
  private:
   /// What the event loop of the network thread has to do; first come, first served.

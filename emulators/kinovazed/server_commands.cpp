@@ -104,11 +104,15 @@ bool Server::repeats() {
 /// What an accepted command does to the arm before it is answered.
 void Server::plan_jobs(State from) {
   using Kind = Job::Kind;
-  const auto plan = [this](Job job) { planned_.push_back(job); };
+  const auto plan = [this](Job job) {
+    job.goes_on = !planned_.empty();
+    planned_.push_back(job);
+  };
   switch (command_.verb) {
     case Verb::kEStop:
       if (from == State::kEmergencyStopped) return;
-      return plan({.kind = Kind::kStopAndRelease});
+      plan({.kind = Kind::kStop});
+      return plan({.kind = Kind::kReleaseControl});
     case Verb::kInitialize:
       plan({.kind = Kind::kTakeControl});
       return plan({.kind = Kind::kInitialize});

@@ -19,8 +19,8 @@ struct Job {
     kPoll,
     kWait,  ///< for its turn only
     kStop,
-    kStopAndRelease,  ///< and gives back control
     kTakeControl,
+    kReleaseControl,
     kInitialize,
     kUnfold,
     kRetract,
@@ -31,6 +31,7 @@ struct Job {
   };
   Kind kind{};
   bool is_awaited = false;  ///< the network side stands still until it is done
+  bool goes_on = false;     ///< with a command that has had a job before
   Instant posted{};
   Mode mode{};            ///< of `kSetMode`
   Deflection deflection;  ///< of `kMove`
@@ -55,8 +56,13 @@ class Worker {
     ArmEvent event{};
   };
 
-  Worker(ArmPort arm, const Behaviour& behaviour, Duration call_time)
-      : arm_{std::move(arm)}, behaviour_{behaviour}, call_time_{call_time} {}
+  /// `late_repairs` decides races between threads: bit n is set if, the n-th time that a call fails
+  /// in a command with more jobs to come, the next job overtakes the poll that repairs.
+  Worker(ArmPort arm, const Behaviour& behaviour, Duration call_time, std::uint32_t late_repairs)
+      : arm_{std::move(arm)},
+        behaviour_{behaviour},
+        call_time_{call_time},
+        late_repairs_{late_repairs} {}
 
   /// Begins to look for the arm, as at the start of the process.
   void start(Instant now);
@@ -85,6 +91,9 @@ class Worker {
   void die() noexcept;
   [[nodiscard]] bool is_dead() const noexcept { return is_dead_; }
 
+  /// How many races `late_repairs` has decided.
+  [[nodiscard]] std::uint32_t repair_races() const noexcept { return repair_races_; }
+
   /// The arm is not flagged as failed.
   [[nodiscard]] bool is_arm_well() const noexcept { return !has_failed_; }
   /// As last polled and inside the workspace.
@@ -109,6 +118,7 @@ class Worker {
       kErase,
       kZeroAxes,
       kRelease,
+      kReleaseThere,  ///< at the end of a motion; the step after it counts only if it works
       kPress,
       kFreshModeToInitialize,
       kFreshModeToRetract,
@@ -134,6 +144,7 @@ class Worker {
     kToTarget,
   };
 
+  [[nodiscard]] bool comes_before_poll(Job& job) noexcept;
   void begin(const Job& job);
   [[nodiscard]] Report finish_job();
   void carry_out(Step step);
@@ -167,6 +178,8 @@ class Worker {
   ArmPort arm_;
   Behaviour behaviour_;
   Duration call_time_;
+  std::uint32_t late_repairs_;
+  std::uint32_t repair_races_ = 0;
   Instant now_{};
   bool is_started_ = false;
   bool is_dead_ = false;

@@ -167,6 +167,69 @@ TEST(KinovaServer, HangsOrDiesAsTheOriginal) {
   }
 }
 
+TEST(KinovaServer, TellsNoEndIfTheButtonCannotBeLetGo) {
+  // The release comes before the event and belongs to the reading of the mode, whose failure is
+  // repaired in silence.
+  struct Case {
+    ArmMode start;
+    std::vector<std::string_view> lines;
+    std::string_view last;
+    int releases;  ///< that work before the one at the end
+  };
+  const std::vector<Case> cases{
+      {ArmMode::kNeverHomed, {"QuitEStop"}, "Initialize\r\n", 0},
+      {ArmMode::kReady, {"QuitEStop", "Initialize"}, "Retract\r\n", 0},
+      {ArmMode::kReady,
+       {"QuitEStop", "Initialize", "SetJoystickMode:XYZ", "MoveJoystick:9:0:0",
+        "SetJoystickMode:NoMode"},
+       "Retract\r\n",
+       0},
+      {ArmMode::kReady, {"QuitEStop", "Initialize", "Retract", "", "", ""}, "Unfold\r\n", 0},
+  };
+  for (const auto& one : cases) {
+    Bench bench{{}, {.start_mode = one.start}};
+    bench.go({});
+    for (const auto line : one.lines) bench.go({line});
+    bench.server.touch(bench.now,
+                       [&](ArmPort& arm) { arm.fail(ArmCall::kReleaseStick, {one.releases, 1}); });
+    bench.send(one.last);
+    bench.pass(5s);
+    EXPECT_EQ(bench.heard(bench.client), kAccepted) << one.last;
+    EXPECT_EQ(bench.beat(), "3") << one.last;
+  }
+}
+
+/// How long after an EStop in idle, whose `call` fails, its reply comes.
+Duration reply_to_estop(ArmCall call, std::uint32_t late_repairs) {
+  Bench bench{{.late_repairs = late_repairs}};
+  bench.to_idle();
+  bench.server.touch(bench.now, [&](ArmPort& arm) { arm.fail(call, {0, 1}); });
+  bench.send("EStop\r\n");
+  const auto asked = bench.now;
+  while (bench.server.sent().empty() && bench.now < asked + 500ms) bench.pass(1ms);
+  EXPECT_EQ(bench.heard(bench.client), kAccepted);
+  EXPECT_EQ(bench.server.repair_races(), call == ArmCall::kReleaseControl ? 0U : 1U);
+  bench.pass(500ms);
+  EXPECT_EQ(bench.beat(), "3");
+  return bench.now - asked - 1600ms;
+}
+
+TEST(KinovaServer, RepairsTheArmInTheMiddleOfAnEStop) {
+  // A stop is erase, axes and release with 10 ms behind each that works, a call takes 0.6 ms:
+  // 31.8 ms; the repair has 50 ms of opening, two looks of 2.4 ms, taking control, and a stop.
+  for (const auto call : {ArmCall::kErase, ArmCall::kReleaseStick}) {
+    const auto reply = reply_to_estop(call, 0);
+    EXPECT_GE(reply, 108ms);
+    EXPECT_LE(reply, 114ms);
+  }
+  // Axes that fail leave out the release.
+  EXPECT_NEAR(std::chrono::duration<double>{reply_to_estop(ArmCall::kWriteAxes, 0)}.count(), 0.101,
+              0.003);
+  EXPECT_LE(reply_to_estop(ArmCall::kReleaseControl, 0), 38ms) << "nothing is left to wait for";
+  // Recording defect-neighbour-release-on-estop: 23 ms, the other order.
+  EXPECT_LE(reply_to_estop(ArmCall::kReleaseStick, 1), 26ms);
+}
+
 TEST(KinovaServer, HangsOnALaterPointOutsideAndDiesOfAMissingObjective) {
   ServerOptions options;
   options.objectives = ObjectiveSet{
