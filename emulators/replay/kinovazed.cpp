@@ -36,7 +36,7 @@ constexpr std::string_view kTerminateNote = "server process is asked to terminat
 struct Recording {
   BenchOptions arm;
   bool is_arm_missing = false;
-  Duration listening_since{};
+  std::optional<Duration> listening_since{};  ///< none: it never did
   std::string end;  ///< `server_after`, and `final_state` unless the process has ended
 };
 
@@ -69,7 +69,6 @@ Outcome<Recording> read_header(const Trace& trace) {
   if (!arm.is_object()) return wrong(trace, 1, "\"arm\" is not an object");
   ArmReader reader{arm};
   double mode = static_cast<double>(recording.arm.start_mode);
-  double is_missing = 0;
   reader.number("start_mode", 0, 100'000, mode);
   reader.number("initialise_s", 1e-6, 1e6, recording.arm.initialise_s);
   reader.number("unfold_s", 1e-6, 1e6, recording.arm.unfold_s);
@@ -79,8 +78,9 @@ Outcome<Recording> read_header(const Trace& trace) {
   reader.number("rotation_rad_s", 1e-6, 1e6, recording.arm.rotation_rad_s);
   reader.number("position_noise", 0, 1, recording.arm.position_noise);
   const auto missing = arm.value("missing_at_start", Json(false));
-  if (missing.is_boolean()) is_missing = missing.get<bool>() ? 1 : 0;
-  recording.is_arm_missing = is_missing > 0;
+  if (!missing.is_boolean())
+    return wrong(trace, 1, "\"arm.missing_at_start\" is not true or false");
+  recording.is_arm_missing = missing.get<bool>();
   recording.arm.start_mode = static_cast<ArmMode>(std::lround(mode));
   const auto since = header.value("listening_since_ms", Json(0));
   const auto after = header.value("server_after", Json{});
@@ -88,16 +88,22 @@ Outcome<Recording> read_header(const Trace& trace) {
   if (!reader.wrong_key().empty()) {
     return wrong(trace, 1, fmt::format("\"arm.{}\" is out of range", reader.wrong_key()));
   }
-  if (!since.is_number() || std::abs(since.get<double>()) > 3.6e6) {
+  const bool never_listened = recording.is_arm_missing && since.is_null();
+  if (!never_listened && (!since.is_number() || std::abs(since.get<double>()) > 3.6e6)) {
     return wrong(trace, 1, "\"listening_since_ms\" is out of range");
   }
-  if (!after.is_string() || !state.is_string()) {
+  if (!after.is_string() || !(state.is_string() || (never_listened && state.is_null()))) {
     return wrong(trace, 1, "\"server_after\" or \"final_state\" is missing");
   }
-  recording.listening_since = std::chrono::duration_cast<Duration>(
-      since.get<double>() * std::chrono::duration<double, std::milli>{1});
+  if (!never_listened) {
+    recording.listening_since = std::chrono::duration_cast<Duration>(
+        since.get<double>() * std::chrono::duration<double, std::milli>{1});
+  }
   recording.end = after.get<std::string>();
-  if (recording.end != "ended") recording.end += " " + state.get<std::string>();
+  if (recording.end == "ended") return recording;
+  recording.end += ' ';
+  recording.end += state.is_string() ? state.get<std::string>()
+                                     : std::string{to_string(State::kEmergencyStopped)};
   return recording;
 }
 
@@ -158,11 +164,12 @@ class Player {
   /// and one look at the arm after its last attempt to open it, and attempts are repeated.
   static Instant start_of(const Recording& recording) {
     constexpr Duration kOpening = pace::kOpen + 4 * 600us;
+    if (!recording.listening_since) return {};
     auto listens = at(kOpening);
-    while (listens.time_since_epoch() < recording.listening_since) {
+    while (listens.time_since_epoch() < *recording.listening_since) {
       listens += pace::kOpen + pace::kRetryAtStart;
     }
-    return listens - recording.listening_since;
+    return listens - *recording.listening_since;
   }
 
   static std::string_view life_name(Server::Life life) {

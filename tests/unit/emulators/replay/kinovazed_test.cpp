@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <string>
 
 #include "emulators/replay/kinovazed_rules.hpp"
@@ -12,6 +14,7 @@
 namespace armjig::kinovazed::replay {
 namespace {
 
+using namespace std::chrono_literals;
 using Events = std::vector<TraceEvent>;
 
 TEST(KinovaRecordings, AreWhatTheServerDoes) {
@@ -118,12 +121,76 @@ std::optional<Problem> refusal(const std::string& text) {
 constexpr auto kHeader =
     R"({"format":"golden-trace/1","device":"kinovazed","server_after":"running","final_state":"idle")";
 
+/// The difference between a recording in lines and the emulator; empty if there is none.
+std::string difference_of(const std::string& text) {
+  const auto trace = parse_trace("x.jsonl", text);
+  if (!trace) return describe(trace.error());
+  const auto difference = verify(*trace, {.run = replay, .compare = session_difference});
+  if (!difference) return describe(difference.error());
+  return *difference ? describe(**difference, *trace, make_dissector) : "";
+}
+
+// The port is closed until the arm answers; attempts take 50 ms and are 1 s apart (reference 1.4);
+// the first heartbeat comes 1 s after the port opens, and is 3 (transcript S13).
+constexpr auto kWithoutArm =
+    R"({"format":"golden-trace/1","device":"kinovazed","server_after":"running",)"
+    R"("arm":{"missing_at_start":true},)";
+constexpr auto kPluggedLate =
+    R"("final_state":"poweredOff","listening_since_ms":2152}
+{"t_ms":0,"dir":"connect","conn":0,"text":"refused"}
+{"t_ms":1500,"dir":"arm","event":"plug","text":"arm is plugged in"}
+{"t_ms":2090,"dir":"connect","conn":1,"text":"refused"}
+{"t_ms":2160,"dir":"connect","conn":2,"text":"ok"}
+{"t_ms":3152,"dir":"from_device","conn":2,"hex":"4865617274626561743a330d0a"}
+{"t_ms":3160,"dir":"to_device","conn":2,"hex":"517569744553746f700d0a"}
+{"t_ms":3161,"dir":"from_device","conn":2,"hex":"41636365707465640d0a"}
+{"t_ms":4152,"dir":"from_device","conn":2,"hex":"4865617274626561743a310d0a"}
+{"t_ms":4160,"dir":"disconnect","conn":2,"text":"client-close"}
+)";
+constexpr auto kNeverPlugged = R"("final_state":null,"listening_since_ms":null}
+{"t_ms":0,"dir":"connect","conn":0,"text":"refused"}
+{"t_ms":9000,"dir":"connect","conn":1,"text":"refused"}
+)";
+
+TEST(KinovaReplay, KnowsAnArmThatIsMissingAtTheStart) {
+  const std::string header = kWithoutArm;
+  EXPECT_EQ(difference_of(header + kPluggedLate), "");
+  EXPECT_EQ(difference_of(header + kNeverPlugged), "");
+  auto early = header + kPluggedLate;
+  early.replace(early.find("2090"), 4, "2155");
+  EXPECT_NE(difference_of(early), "") << "it listens by then";
+  auto present = header + kNeverPlugged;
+  present.replace(present.find("true"), 4, "false");
+  EXPECT_NE(difference_of(present), "");
+}
+
+TEST(KinovaReplay, TakesEitherOrderOfARepairAndTheNextJob) {
+  // The recording has the rarer order: EStop is answered after 23 ms. In the other one it waits for
+  // the repair, 50 ms of opening, two looks of 2.4 ms, taking control and a stop of 31.8 ms longer.
+  const auto name = source_dir() + "/captures/kinovazed/defect-neighbour-release-on-estop.jsonl";
+  auto trace = read_trace(name).value_or(Trace{});
+  const auto is_equal = [&] {
+    const auto difference = verify(trace, {.run = replay, .compare = session_difference});
+    return difference && !*difference;
+  };
+  EXPECT_TRUE(is_equal());
+  const auto reply = std::ranges::find_if(
+      trace.events, [](const TraceEvent& one) { return one.time == at(2598ms); });
+  ASSERT_NE(reply, trace.events.end());
+  reply->time += 87ms;
+  EXPECT_TRUE(is_equal());
+  reply->time += 100ms;
+  EXPECT_FALSE(is_equal());
+}
+
 TEST(KinovaReplay, RefusesWhatItCannotMean) {
   const std::string header = kHeader;
   EXPECT_FALSE(refusal(header + "}\n"));
   EXPECT_TRUE(refusal(header + R"(,"arm":3})"));
   EXPECT_TRUE(refusal(header + R"(,"arm":{"unfold_s":-1}})"));
   EXPECT_TRUE(refusal(header + R"(,"listening_since_ms":"now"})"));
+  EXPECT_TRUE(refusal(header + R"(,"listening_since_ms":null})"));
+  EXPECT_TRUE(refusal(header + R"(,"arm":{"missing_at_start":1}})"));
   EXPECT_TRUE(refusal(header + "}\n" + R"({"t_ms":0,"dir":"to_device","conn":3,"hex":"0a"})"));
   EXPECT_TRUE(refusal(header + "}\n" + R"({"t_ms":0,"dir":"arm","event":"fail","call":"nap"})"));
   EXPECT_TRUE(refusal(header + "}\n" + R"({"t_ms":0,"dir":"dance"})"));
