@@ -29,10 +29,11 @@ void Connections::close(ConnectionId id) {
   if (auto* const client = find(id)) client->has_ended = client->is_gone = true;
 }
 
-void Connections::reset(ConnectionId id) {
-  if (auto* const client = find(id)) {
-    client->has_ended = client->is_gone = client->has_reset = true;
-  }
+bool Connections::reset(ConnectionId id) {
+  auto* const client = find(id);
+  if (client == nullptr) return false;
+  client->has_ended = client->is_gone = client->has_reset = true;
+  return !client->was_told && id == (served_ ? served_->id : waiting_.front().id);
 }
 
 std::size_t Connections::unread(ConnectionId id) const noexcept {
@@ -70,6 +71,7 @@ bool Connections::write(Instant time, std::string_view text) {
     served_->has_reset = true;  // the answer to bytes that nobody wants
     return true;
   }
+  served_->was_told = true;
   add(time, served_->id, SessionEvent::Kind::kData, std::as_bytes(std::span{text}));
   return true;
 }

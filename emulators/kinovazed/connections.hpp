@@ -24,7 +24,8 @@ class Connections {
   void receive(ConnectionId id, Bytes bytes);
   void half_close(ConnectionId id);
   void close(ConnectionId id);
-  void reset(ConnectionId id);
+  /// True if it is this client's turn, or was going to be, and it has not heard anything yet.
+  bool reset(ConnectionId id);
   /// Bytes that the server has not read.
   [[nodiscard]] std::size_t unread(ConnectionId id) const noexcept;
 
@@ -60,6 +61,7 @@ class Connections {
     bool has_ended = false;
     bool is_gone = false;  ///< closed: it answers the next write with a reset
     bool has_reset = false;
+    bool was_told = false;  ///< anything
   };
   [[nodiscard]] Client* find(ConnectionId id) noexcept;
   void tell(Instant time, const Client& client, SessionEvent::Kind kind);

@@ -8,6 +8,7 @@ namespace armjig::kinovazed::emulation {
 namespace {
 
 constexpr std::size_t kLogLines = 256;
+constexpr int kDeadlyResets = 3;
 
 }  // namespace
 
@@ -47,7 +48,8 @@ void Server::close(Instant time, ConnectionId id) {
 
 void Server::reset(Instant time, ConnectionId id) {
   reach(time);
-  connections_.reset(id);
+  if (!connections_.reset(id) || !options_.behaviour.dies_of_resets) return;
+  if (++silent_resets_ == kDeadlyResets) die();
 }
 
 void Server::terminate(Instant time) {
@@ -327,6 +329,7 @@ void Server::end_process() {
   planned_.clear();
   is_connected_ = is_read_armed_ = may_hold_line_ = is_initialized_ = resumes_late_ = false;
   waiting_ = Waiting::kNo;
+  silent_resets_ = 0;
   state_ = State::kEmergencyStopped;
   mode_ = Mode::kNoMode;
   said_by_arm_.reset();

@@ -165,6 +165,7 @@ class Server {
   bool is_connected_ = false;  ///< as the server believes
   bool is_read_armed_ = false;
   bool may_hold_line_ = false;  ///< behind the one that was served
+  int silent_resets_ = 0;       ///< see `Behaviour::dies_of_resets`
   std::deque<ServerMessage> outbox_;
   Instant beat_due_{};
 

@@ -20,7 +20,8 @@ constexpr std::array kFlags{Named<Flag>{"ignores-bad-lines", &Behaviour::ignores
                             Named<Flag>{"beat-asks-supervision", &Behaviour::beat_asks_supervision},
                             Named<Flag>{"shares-objective", &Behaviour::shares_objective},
                             Named<Flag>{"sticks-when-folded", &Behaviour::sticks_when_folded},
-                            Named<Flag>{"dies", &Behaviour::dies}};
+                            Named<Flag>{"dies", &Behaviour::dies},
+                            Named<Flag>{"dies-of-resets", &Behaviour::dies_of_resets}};
 
 using namespace std::chrono_literals;
 using Spoil = void (*)(Behaviour& behaviour);

@@ -49,6 +49,35 @@ TEST(KinovaServer, ServesAWaitingClientThatHasClosedAndDiesOfOneThatHasReset) {
   EXPECT_FALSE(bench.server.connect(bench.now));
 }
 
+TEST(KinovaServer, DiesOfTheThirdInstantResetIfToldTo) {
+  ServerOptions options;
+  options.behaviour.dies_of_resets = true;
+  Bench bench{options};
+  bench.server.close(bench.now, bench.client);
+  const auto come_and_reset = [&](std::string_view text) {
+    const auto id = bench.connect();
+    bench.pass(1ms);
+    bench.send(id, text);
+    bench.pass(20ms);
+    bench.server.reset(bench.now, id);
+    bench.pass(5ms);
+  };
+  come_and_reset("");
+  for (int i = 0; i < 5; ++i) come_and_reset("EStop\r\n");  // they hear Accepted
+  come_and_reset("ESt");
+  EXPECT_EQ(bench.server.life(), Server::Life::kRunning);
+  come_and_reset("");
+  EXPECT_EQ(bench.server.life(), Server::Life::kEnded);
+  Bench shipped;
+  for (int i = 0; i < 50; ++i) {
+    shipped.server.reset(shipped.now, shipped.client);
+    shipped.pass(5ms);
+    shipped.client = shipped.connect();
+    shipped.pass(5ms);
+  }
+  EXPECT_EQ(shipped.server.life(), Server::Life::kRunning) << "not by itself";
+}
+
 struct CloseCase {
   const char* name;
   const char* lines;
