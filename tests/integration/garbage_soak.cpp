@@ -7,7 +7,6 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <random>
 #include <string>
 #include <thread>
@@ -53,14 +52,6 @@ class Garbage {
   std::mt19937 random_;
   std::array<std::byte, 4096> chunk_{};
 };
-
-long resident_kib(pid_t pid) {
-  std::ifstream status{fmt::format("/proc/{}/status", pid)};
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
-  }
-  return 0;
-}
 
 /// One client: writes for a while, reads now and then. Answers how much it wrote.
 std::uint64_t visit(const std::string& path, Garbage& garbage, Duration length) {
@@ -113,7 +104,7 @@ int main() {
   const Stopwatch clock;
   (void)visit(path, garbage, kWarmUp / 2);
   (void)visit(path, garbage, kWarmUp / 2);
-  const auto before = resident_kib(program.pid());
+  const auto before = testing::resident_kib(program.pid());
   std::uint64_t written = 0;
   const auto start = clock.now();
   while (clock.now() - start < minutes) {
@@ -122,7 +113,7 @@ int main() {
   }
   const auto seconds = std::chrono::duration<double>{clock.now() - start}.count();
   const bool is_answered = is_good_frame_answered(path);
-  const auto growth = resident_kib(program.pid()) - before;
+  const auto growth = testing::resident_kib(program.pid()) - before;
 
   program.signal(SIGTERM);
   fmt::print("{}", program.read_errors());

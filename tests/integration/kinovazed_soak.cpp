@@ -9,7 +9,6 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <random>
 #include <string>
@@ -70,14 +69,6 @@ class Hostility {
  private:
   std::mt19937 random_;
 };
-
-long resident_kib(pid_t pid) {
-  std::ifstream status{fmt::format("/proc/{}/status", pid)};
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
-  }
-  return 0;
-}
 
 /// What was seen of the second clients.
 struct Seconds {
@@ -144,7 +135,7 @@ int main() {
   Seconds seconds;
   const Stopwatch clock;
   while (clock.now() < at(kWarmUp)) (void)visit(address, hostility, kVisit, seconds);
-  const auto before = resident_kib(program.pid());
+  const auto before = testing::resident_kib(program.pid());
   seconds = {};
   std::uint64_t written = 0;
   int visits = 0;
@@ -153,7 +144,7 @@ int main() {
     written += visit(address, hostility, kVisit, seconds);
   }
   const auto time = std::chrono::duration<double>{clock.now() - start}.count();
-  const auto growth = resident_kib(program.pid()) - before;
+  const auto growth = testing::resident_kib(program.pid()) - before;
   program.signal(SIGTERM);
   const auto exit_code = program.wait();
   fmt::print(

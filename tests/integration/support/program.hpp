@@ -41,6 +41,9 @@ class Program {
   Descriptor errors_;
 };
 
+/// Memory of a process, in KiB; 0 if there is none.
+[[nodiscard]] long resident_kib(pid_t pid);
+
 /// How a run ended.
 struct Ended {
   int exit_code{};
