@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "harness/core/nearest.hpp"
+
 namespace armjig::cli {
 namespace {
 
@@ -53,7 +55,7 @@ Outcome<const Device*> find_device(Devices devices, std::string_view name) {
   const auto found = std::ranges::find(devices, name, &Device::name);
   if (found != devices.end()) return &*found;
   return problem(ErrorCode::kUnknownDevice, fmt::format("'{}'", name),
-                 "there are: " + names_of(devices));
+                 did_you_mean(name, devices, &Device::name) + "there are: " + names_of(devices));
 }
 
 std::vector<KnownBoard> known_boards(Devices devices) {

@@ -13,12 +13,14 @@
 #include <string>
 #include <vector>
 
+#include "cli/choice.hpp"
 #include "cli/command.hpp"
 #include "harness/arm/jacobian.hpp"
 #include "harness/arm/models.hpp"
 #include "harness/arm/numeric_ik.hpp"
 #include "harness/arm/orientation.hpp"
 #include "harness/arm/spherical_wrist.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/urdf/urdf.hpp"
 
 namespace armjig::cli {
@@ -82,7 +84,8 @@ Outcome<Subject> subject_without_tool(const Options& options) {
     std::string names;
     for (const auto& entry : arm::models()) names += fmt::format(" {}", entry.name);
     return problem(ErrorCode::kUnknownDevice, "--arm " + options.arm,
-                   "write a file, or one of:" + names);
+                   did_you_mean(options.arm, arm::models(), &arm::ModelEntry::name) +
+                       "write a file, or one of:" + names);
   }
   auto arm = arm::read_urdf(options.arm, options.tip);
   if (!arm) return tl::unexpected{arm.error()};
@@ -358,7 +361,7 @@ CLI::App* add_computation(CLI::App& kin, const std::string& name, const std::str
       ->delimiter(',')
       ->expected(6);
   command->add_option("--convention", options->convention, "what three angles mean")
-      ->check(CLI::IsMember(convention_names()));
+      ->check(one_of(convention_names()));
   command->add_flag("--json", options->json, "one JSON object (docs/schemas)");
   command->callback([options, compute, &action] {
     action = [options, compute] {

@@ -29,7 +29,7 @@ void add_link_options(CLI::App& app, TargetOptions& options) {
 Outcome<RigOptions> parse_target_options(const TargetOptions& options) {
   if (options.target.empty()) {
     return problem(ErrorCode::kBadTarget, "--target is missing",
-                   "for a first try: --target emulated:");
+                   "say where the device is; for a first try: --target emulated:");
   }
   RigOptions rig;
   rig.wire_log = options.wire_log;

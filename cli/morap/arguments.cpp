@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/morap/arguments.hpp"
 
+#include "cli/choice.hpp"
+
 namespace armjig::cli {
 
 using namespace morap;
@@ -16,7 +18,7 @@ TuneOptions add_tune_options(CLI::App& app, TuneArguments& arguments) {
   auto* type =
       app.add_option("--type", arguments.type, "pd or pid: position control, pi: speed control")
           ->type_name("TYPE")
-          ->check(CLI::IsMember({"pd", "pid", "pi"}));
+          ->check(one_of({"pd", "pid", "pi"}));
   auto* inertia = app.add_option("--inertia", arguments.inertia,
                                  "of what hangs on the output shaft, kg m^2, up to 10")
                       ->type_name("J");
@@ -29,7 +31,7 @@ TuneOptions add_tune_options(CLI::App& app, TuneArguments& arguments) {
 void add_motor_option(CLI::App& app, std::string& motor) {
   app.add_option("--motor", motor, "of the joint: dcx22l with gear 231:1 or dcx26l with 149:1")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"dcx22l", "dcx26l"}))
+      ->check(one_of({"dcx22l", "dcx26l"}))
       ->capture_default_str();
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "cli/choice.hpp"
 #include "cli/morap/arguments.hpp"
 #include "cli/morap/bus_session.hpp"
 #include "cli/morap/commands.hpp"
@@ -164,7 +165,7 @@ void add_read_params(CLI::App& morap, const Device& device, Action& action) {
   auto* command = morap.add_subcommand("read-params", "Shows the active controllers of a node.");
   const auto options = std::make_shared<Options>();
   command->add_option("--controller", options->controller, "which of them")
-      ->check(CLI::IsMember({"position", "speed", "both"}))
+      ->check(one_of({"position", "speed", "both"}))
       ->capture_default_str();
   add_target_options(*command, options->target);
   add_node_option(*command, options->node);

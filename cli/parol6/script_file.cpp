@@ -12,6 +12,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "cli/choice.hpp"
 #include "harness/arm/orientation.hpp"
 #include "harness/motion/parol6/joint_table.hpp"
 #include "harness/script/parser.hpp"
@@ -46,7 +47,7 @@ void add_script_options(CLI::App& app, ScriptOptions& options) {
   app.add_option("--dialect", options.dialect,
                  "documented: the vendor's document made precise; commander: what its PC program "
                  "takes a line for")
-      ->check(CLI::IsMember({"documented", "commander"}))
+      ->check(one_of({"documented", "commander"}))
       ->capture_default_str();
 }
 
@@ -85,12 +86,12 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
   app.add_option("--on-singularity", options.on_singularity,
                  "a line on which the tool would be lost: refuse it, stop in front of the place, "
                  "or try to go on; the commander always tries")
-      ->check(CLI::IsMember({"refuse", "stop", "try"}))
+      ->check(one_of({"refuse", "stop", "try"}))
       ->capture_default_str();
   std::vector<std::string> names;
   for (const auto& convention : arm::conventions()) names.emplace_back(convention.name);
   app.add_option("--orientation", options.orientation, "what RX, RY and RZ of a pose mean")
-      ->check(CLI::IsMember(names))
+      ->check(one_of(names))
       ->capture_default_str();
   app.add_option("--loops", options.loops, "passes of a program that ends with Loop()")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))

@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "harness/core/nearest.hpp"
+
 namespace armjig {
 namespace {
 
@@ -95,7 +97,11 @@ Outcome<Fault> parse_fault(std::string_view text, std::span<const Field> fields)
   const auto where = "fault '" + std::string{text} + "'";
   const auto colon = text.find(':');
   const auto form = std::ranges::find(kForms, text.substr(0, colon), &Form::name);
-  if (form == kForms.end()) return problem(ErrorCode::kBadValue, where, "known: " + fault_forms());
+  if (form == kForms.end()) {
+    return problem(
+        ErrorCode::kBadValue, where,
+        did_you_mean(text.substr(0, colon), kForms, &Form::name) + "known: " + fault_forms());
+  }
   Fault fault{.kind = form->kind};
   const bool has_argument = colon != std::string_view::npos;
   if (has_argument != (form->argument != Argument::kNone)) {
@@ -105,7 +111,8 @@ Outcome<Fault> parse_fault(std::string_view text, std::span<const Field> fields)
   if (read_argument(fault, form->argument, argument, fields)) return fault;
   std::string names;
   for (const auto& field : fields) names += ' ' + std::string{field.name};
-  return problem(ErrorCode::kBadValue, where, "fields:" + names);
+  return problem(ErrorCode::kBadValue, where,
+                 did_you_mean(argument, fields, &Field::name) + "fields:" + names);
 }
 
 std::string to_string(const Fault& fault) {

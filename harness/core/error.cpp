@@ -67,6 +67,9 @@ Error error_from_errno(int error_number) noexcept {
 std::string describe(const Problem& problem) {
   std::string line = problem.where;
   if (!line.empty()) line += ": ";
+  const bool says_what =
+      problem.code == ErrorCode::kBadValue || problem.code == ErrorCode::kBadTarget;
+  if (says_what && !problem.hint.empty()) return line + problem.hint;
   line += describe(problem.code);
   if (!problem.hint.empty()) {
     line += "; ";

@@ -70,7 +70,7 @@ using Outcome = tl::expected<T, Problem>;
   return tl::unexpected<Problem>{Problem{code, std::move(where), std::move(hint)}};
 }
 
-/// The one line that a user reads: `WHERE: SENTENCE; HINT`.
+/// What a user reads: `WHERE: SENTENCE; HINT`, of `kBadValue` and `kBadTarget` `WHERE: HINT`.
 [[nodiscard]] std::string describe(const Problem& problem);
 
 }  // namespace armjig

@@ -9,6 +9,8 @@
 #include <optional>
 #include <system_error>
 
+#include "harness/core/nearest.hpp"
+
 namespace armjig {
 namespace {
 
@@ -115,7 +117,9 @@ Outcome<std::int64_t> OptionValue::whole(std::int64_t most) const {
 Outcome<std::size_t> OptionValue::index() const {
   const auto words = split(one_of(row_.values), '|');
   const auto word = std::ranges::find(words, text_);
-  if (word == words.end()) return refuse("write " + enumerate(words, "or"));
+  if (word == words.end()) {
+    return refuse(did_you_mean(text_, words) + "write " + enumerate(words, "or"));
+  }
   return static_cast<std::size_t>(word - words.begin());
 }
 
@@ -123,8 +127,9 @@ Outcome<void> check_names(std::string_view device, const std::vector<std::string
                           const DeviceOptions& options, std::string_view where) {
   for (const auto& [name, value] : options) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    return problem(ErrorCode::kUnknownOption, fmt::format("{}, {}", where, name),
-                   fmt::format("{} has {}", device, enumerate(known, "and")));
+    return problem(
+        ErrorCode::kUnknownOption, fmt::format("{}, {}", where, name),
+        fmt::format("{}{} has {}", did_you_mean(name, known), device, enumerate(known, "and")));
   }
   return {};
 }

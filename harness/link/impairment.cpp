@@ -13,6 +13,8 @@
 #include <system_error>
 #include <vector>
 
+#include "harness/core/nearest.hpp"
+
 namespace armjig {
 namespace {
 
@@ -388,7 +390,9 @@ Outcome<Item> parse_item(std::string_view text) {
     return item;
   std::string names;
   for (const auto& option : kOptions) names += fmt::format("{}, ", option.name);
-  return bad_item(ErrorCode::kUnknownOption, text, fmt::format("known: {}seed", names));
+  return bad_item(
+      ErrorCode::kUnknownOption, text,
+      fmt::format("{}known: {}seed", did_you_mean(item.name, kOptions, &Option::name), names));
 }
 
 Outcome<void> apply(const Item& item, Impairment& impairment) {

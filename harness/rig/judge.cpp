@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "harness/core/nearest.hpp"
+
 namespace armjig {
 namespace {
 
@@ -28,8 +30,9 @@ Outcome<Permissions> parse_permissions(std::string_view text) {
     const auto found = std::ranges::find(kHazards, word);
     if (found == kHazards.end()) {
       return problem(ErrorCode::kBadValue, "--allow " + std::string{text},
-                     "choose from state, move, home, grip, program, crash with commas between "
-                     "them, or all");
+                     did_you_mean(word, kHazards) +
+                         "choose from state, move, home, grip, program, crash with commas between "
+                         "them, or all");
     }
     permissions.add(static_cast<Hazard>(found - kHazards.begin()));
     rest = end == std::string_view::npos ? "" : rest.substr(end + 1);

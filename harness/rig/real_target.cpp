@@ -48,17 +48,14 @@ Outcome<std::unique_ptr<StreamPort>> open_target(const Target& target, const Ser
   if (target.scheme == "serial") return open_serial_target(target, line);
   if (target.scheme == "usb") return open_usb_target(target, line);
   if (target.scheme == "tcp") return open_tcp_stream(target.address);
-  return bad_target(target.text,
-                    "write emulated:, serial:PATH, usb:VID:PID, pty:PATH or tcp:HOST:PORT; 'armjig "
-                    "devices' lists what is plugged in");
+  return no_target(target.text);
 }
 
 template <>
 Outcome<std::unique_ptr<SessionSource>> open_target(const Target& target,
                                                     const SerialLine& /*line*/) {
   if (target.scheme == "tcp") return open_tcp_server(target.address);
-  return problem(ErrorCode::kBadTarget, target.text,
-                 "a server has connections: write emulated: or tcp:HOST:PORT");
+  return bad_target(target.text, "a server has connections: write emulated: or tcp:HOST:PORT");
 }
 
 template <>

@@ -3,24 +3,33 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
+#include "harness/core/nearest.hpp"
+#include "harness/rig/target_schemes.hpp"
+
 namespace armjig {
 namespace {
 
 constexpr auto kForms =
-    "write emulated:, serial:PATH, usb:VID:PID, pty:PATH or tcp:HOST:PORT; 'armjig devices' lists "
-    "what is plugged in";
+    "this is no target; write emulated:, serial:PATH, usb:VID:PID, pty:PATH or tcp:HOST:PORT; "
+    "'armjig devices' lists what is plugged in";
 
 }  // namespace
 
 tl::unexpected<Problem> bad_target(std::string_view text, std::string_view hint) {
-  return problem(ErrorCode::kBadTarget, fmt::format("'{}'", text), std::string{hint});
+  const auto scheme = text.substr(0, std::min(text.find(':'), text.size() - 1) + 1);
+  return problem(ErrorCode::kBadTarget, fmt::format("'{}'", text),
+                 did_you_mean(scheme, kTargetSchemes).append(hint));
 }
+
+tl::unexpected<Problem> no_target(std::string_view text) { return bad_target(text, kForms); }
 
 Outcome<Target> parse_target(std::string_view text) {
   Target target;
   target.text = text;
   const auto colon = text.find(':');
-  if (colon == std::string_view::npos) return bad_target(text, kForms);
+  if (colon == std::string_view::npos) return no_target(text);
   target.scheme = text.substr(0, colon);
   auto rest = text.substr(colon + 1);
   // Only emulated targets have options; a path or host may contain a question mark.

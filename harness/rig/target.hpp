@@ -32,5 +32,7 @@ struct Target {
 
 /// What a target is refused with.
 [[nodiscard]] tl::unexpected<Problem> bad_target(std::string_view text, std::string_view hint);
+/// What something is refused with that begins like no target.
+[[nodiscard]] tl::unexpected<Problem> no_target(std::string_view text);
 
 }  // namespace armjig

@@ -10,6 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "harness/core/nearest.hpp"
+
 namespace armjig::kinovazed::emulation {
 namespace {
 
@@ -264,7 +266,8 @@ Outcome<void> add_fault(std::string_view text, ServerOptions& options, std::vect
   const auto* const form = find_named(kForms, take_until(rest, ':'));
   if (form != nullptr && form->meaning(rest, {options, quirks})) return {};
   return problem(ErrorCode::kBadValue, fmt::format("fault '{}'", text),
-                 "'armjig conformance mutants kinovazed --list' shows all");
+                 did_you_mean(text, all_faults(), &NamedFault::name) +
+                     "'armjig conformance mutants kinovazed --list' shows all");
 }
 
 std::vector<NamedFault> all_faults() {

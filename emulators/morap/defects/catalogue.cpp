@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "emulators/morap/defects/defects.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/wire/morap/fields.hpp"
 
 namespace armjig::morap::emulation {
@@ -234,7 +235,8 @@ Outcome<void> add_fault(std::string_view text, NodeSetup& setup, Defects& defect
   if (word != nullptr && word->meaning(rest, setup, defects)) return {};
   std::string words = "it begins with one of:";
   for (const auto& one : kWords) words.append(" ").append(one.name).append(":");
-  return problem(ErrorCode::kBadValue, "fault '" + std::string{text} + "'", words);
+  return problem(ErrorCode::kBadValue, "fault '" + std::string{text} + "'",
+                 did_you_mean(text, all_faults(), &NamedFault::name) + words);
 }
 
 std::vector<NamedFault> all_faults() {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "emulators/parol6/defects/defects.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/wire/parol6/fields.hpp"
 
 namespace armjig::parol6::emulation {
@@ -280,7 +281,8 @@ Outcome<void> add_fault(std::string_view text, ArmOptions& arm, Defects& defects
     return {};
   }
   return problem(ErrorCode::kBadValue, "fault '" + std::string{text} + "'",
-                 "armjig conformance mutants parol6 --list names all there are");
+                 did_you_mean(text, all_faults(), &NamedFault::name) +
+                     "armjig conformance mutants parol6 --list names all there are");
 }
 
 std::vector<NamedFault> all_faults() {

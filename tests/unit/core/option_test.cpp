@@ -82,6 +82,10 @@ TEST(DeviceOptions, AreRefusedInTheSameWordsForAllDevices) {
   EXPECT_EQ(complaint({{"colour", "red"}}),
             "there, colour: thing has mode, size, any, ratio, name and list");
   EXPECT_EQ(complaint({{"mode", "x"}}), "there, mode=x: write slow, fast or off");
+  EXPECT_EQ(complaint({{"rato", "1"}}),
+            "there, rato: did you mean 'ratio'? thing has mode, size, any, ratio, name and list");
+  EXPECT_EQ(complaint({{"mode", "fats"}}),
+            "there, mode=fats: did you mean 'fast'? write slow, fast or off");
   EXPECT_EQ(complaint({{"size", "256"}}), "there, size=256: write a whole number from 0 to 255");
   EXPECT_EQ(complaint({{"size", "1.5"}}), "there, size=1.5: write a whole number from 0 to 255");
   EXPECT_EQ(complaint({{"any", "9223372036854775808"}}),

@@ -109,7 +109,6 @@ struct Refused {
 };
 
 TEST(ParseImpairment, RefusesEachMistakeInOneLineThatSaysWhatToDo) {
-  constexpr std::string_view kBad = "the value is out of range or of the wrong form; ";
   const std::vector<Refused> mistakes{
       {"", "impairment '': write NAME=VALUE, as in loss=1%,delay=2ms"},
       {"loss=1%,", "impairment '': write NAME=VALUE, as in loss=1%,delay=2ms"},
@@ -177,12 +176,7 @@ TEST(ParseImpairment, RefusesEachMistakeInOneLineThatSaysWhatToDo) {
       {"loss=1%,loss=2%", "impairment 'loss=2%': loss is given twice: leave one out"},
       {"in.loss=1%,in.loss=1%", "impairment 'in.loss=1%': loss is given twice: leave one out"},
   };
-  for (const auto& [text, line] : mistakes) {
-    const auto place = line.find("': ") + 3;
-    const auto expected =
-        std::string{line.substr(0, place)} + std::string{kBad} + std::string{line.substr(place)};
-    EXPECT_EQ(refusal(text), expected);
-  }
+  for (const auto& [text, line] : mistakes) EXPECT_EQ(refusal(text), line);
 }
 
 TEST(ParseImpairment, NamesTheOptionsToWhomItRefusesOne) {

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace armjig {
+
+/// What targets begin with.
+inline constexpr std::array<std::string_view, 7> kTargetSchemes{
+    "emulated:", "serial:", "usb:", "pty:", "tcp:", "i2c:", "i2c-tiny-usb:"};
+
+}  // namespace armjig
