@@ -17,8 +17,14 @@
 
 namespace armjig {
 
-/// A message as evidence, with its time.
-[[nodiscard]] std::string line_of(const Message& message);
+/// Messages as evidence: a line for each with its time, and its first bytes. The field that a
+/// judgement is about, one that got `NAME = VALUE`, has a line of its own below the newest message
+/// with that value.
+[[nodiscard]] std::string evidence_of(const std::deque<Message>& messages,
+                                      const Judgement& judgement);
+
+/// A field's value as judgements say it: `speed.j1 = 99 steps/s = 0x000063`.
+[[nodiscard]] std::string sentence_of(const Field& field, std::int64_t value);
 
 /// What benches on all three kinds of ports do with their rig.
 template <class Port>
@@ -66,9 +72,7 @@ class DissectedBench : public PortBench<Port> {
       : PortBench<Port>{std::move(rig)}, dissector_{std::move(dissector)}, most_{remembered} {}
 
   [[nodiscard]] std::string last_exchange() const override {
-    std::string text;
-    for (const auto& message : exchange_) text += line_of(message);
-    return text;
+    return evidence_of(exchange_, this->judgement());
   }
 
  protected:

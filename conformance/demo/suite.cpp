@@ -37,12 +37,12 @@ class MachineBench final : public StreamBench {
 
   void expect_state(State state) {
     const auto& field = reply_fields()[1];
-    const auto wanted = field_text(field, static_cast<std::int64_t>(state));
+    const auto wanted = sentence_of(field, static_cast<std::int64_t>(state));
     const auto reply = receive(100ms);
     if (!reply) return fail_by_silence(wanted, "silence");
     if (!reply->fault.empty()) return fail(wanted, reply->fault);
     const auto value = field_value(field, reply->raw);
-    if (value != static_cast<std::int64_t>(state)) fail(wanted, field_text(field, value));
+    if (value != static_cast<std::int64_t>(state)) fail(wanted, sentence_of(field, value));
   }
 };
 

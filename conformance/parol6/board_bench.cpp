@@ -172,10 +172,10 @@ void BoardBench::expect_between(const Answer& answer, std::string_view name, std
   const auto& field = telemetry_field(name);
   const auto value = field_value(field, answer.raw);
   if (value >= least && value <= most) return;
-  const auto wanted = least == most ? field_text(field, least)
-                                    : fmt::format("{} to {}", least, field_text(field, most));
-  fail(behind(fmt::format("{} = {}", name, wanted)),
-       fmt::format("{} = {}", name, field_text(field, value)));
+  const auto wanted = least == most
+                          ? sentence_of(field, least)
+                          : fmt::format("{} = {} to {}", name, least, field_text(field, most));
+  fail(behind(wanted), sentence_of(field, value));
 }
 
 /// Asks until the board answers, for it may wait for the rest of what it took for a long frame.

@@ -79,6 +79,11 @@ data evidence_data(const std::string& evidence) {
   return entry;
 }
 
+/// Whether somebody has to look at it.
+bool is_open(const ReportRow& row) {
+  return wording::is_finding(row.verdict) || row.verdict == Verdict::kError;
+}
+
 data row_data(const ReportRow& row) {
   list details;
   for (const auto& [label, text] : wording::details_of(row)) {
@@ -93,7 +98,7 @@ data row_data(const ReportRow& row) {
   const bool has_reason = wording::is_reason(row.verdict) && !row.actual.empty();
   entry.set("reason", has_reason ? text_data("text", row.actual) : data{false});
   entry.set("time", time_text(row.duration));
-  entry.set("is_open", wording::is_finding(row.verdict) || row.verdict == Verdict::kError);
+  entry.set("is_open", is_open(row));
   entry.set("has_details", !details.empty());
   entry.set("details", details);
   entry.set("evidence", row.evidence.empty() ? data{false} : evidence_data(row.evidence));
@@ -111,6 +116,16 @@ data topic_data(const wording::Topic& topic) {
   entry.set("counts", fmt::format("{} of {} passed", passed, topic.rows.size()));
   entry.set("rows", rows);
   return entry;
+}
+
+/// What somebody has to look at comes first, of topics and of the rows in each.
+std::vector<wording::Topic> sorted_topics(const Report& report) {
+  auto topics = wording::topics_of(report);
+  const auto is_open_row = [](const ReportRow* row) { return is_open(*row); };
+  for (auto& topic : topics) std::ranges::stable_partition(topic.rows, is_open_row);
+  std::ranges::stable_partition(
+      topics, [&](const wording::Topic& topic) { return is_open_row(topic.rows.front()); });
+  return topics;
 }
 
 list shares_data(const Report& report) {
@@ -191,7 +206,7 @@ std::string to_html(const Report& report) {
   view.set("facts", facts);
   view.set("has_rows", !report.rows.empty());
   list topics;
-  for (const auto& topic : wording::topics_of(report)) topics.push_back(topic_data(topic));
+  for (const auto& topic : sorted_topics(report)) topics.push_back(topic_data(topic));
   view.set("topics", topics);
   list sections;
   for (const auto& section : report.sections) {

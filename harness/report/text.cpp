@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/report/failures.hpp"
 #include "harness/report/report.hpp"
 #include "harness/report/wording.hpp"
 
@@ -47,6 +48,10 @@ constexpr std::string_view word_of(Verdict verdict) noexcept {
 std::string padded(std::string_view printable, std::size_t width) {
   const auto used = wording::width_of(printable);
   return std::string{printable} + std::string(width > used ? width - used : 0, ' ');
+}
+
+std::string painted_word(Verdict verdict, Style style) {
+  return painted(padded(word_of(verdict), 9), colour_of(verdict), style);
 }
 
 using Cells = std::vector<std::string>;
@@ -95,9 +100,21 @@ std::string counts_line(const Report& report, Style style) {
   return line;
 }
 
+std::string failures_text(const Report& report, Style style) {
+  constexpr std::size_t kRoom = 100;
+  std::string text;
+  for (const auto& row : report.rows) {
+    if (!wording::is_finding(row.verdict) && row.verdict != Verdict::kError) continue;
+    auto wrong = wording::expected_and_actual(row);
+    if (wording::width_of(wrong) > kRoom) wrong = wording::cut(wrong, kRoom - 4) + " ...";
+    text += fmt::format("{} {} {}\n", painted_word(row.verdict, style),
+                        padded(wording::line(row.name), 36), wrong);
+  }
+  return text;
+}
+
 std::string to_text(const ReportRow& row, Style style) {
-  const auto word = padded(word_of(row.verdict), 9);
-  auto text = fmt::format("{} {} {}\n", painted(word, colour_of(row.verdict), style),
+  auto text = fmt::format("{} {} {}\n", painted_word(row.verdict, style),
                           padded(wording::line(row.name), 36), wording::line(row.summary));
   if (row.verdict != Verdict::kPass) text += wording::details_text(row, "          ");
   return text;

@@ -95,6 +95,12 @@ std::size_t width_of(std::string_view printable) noexcept {
       printable, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
+std::string cut(std::string_view printable, std::size_t width) {
+  auto end = std::min(printable.size(), width);
+  while (end < printable.size() && width_of(printable.substr(0, end + 1)) <= width) ++end;
+  return std::string{printable.substr(0, end)};
+}
+
 std::string xml(std::string_view text) {
   std::string out;
   for (const char c : lines(text)) {

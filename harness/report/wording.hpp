@@ -18,6 +18,9 @@ namespace armjig::wording {
 /// The columns that printable text takes, if every character is as wide as a letter.
 [[nodiscard]] std::size_t width_of(std::string_view printable) noexcept;
 
+/// As many whole characters from its beginning as fit in `width` columns.
+[[nodiscard]] std::string cut(std::string_view printable, std::size_t width);
+
 /// `lines` with `&`, `<`, `>` and quotes escaped, for element content and quoted attributes.
 [[nodiscard]] std::string xml(std::string_view text);
 

@@ -43,7 +43,7 @@ TEST(Answers, OfABoardAreJudgedByTheirBytesAndNotByWhatWeMadeOfThem) {
   answer.check = 0xD4;
   board->expect(answer, "check", 0xD4);
   EXPECT_EQ(board->judgement().verdict, Verdict::kFail);
-  EXPECT_EQ(board->judgement().actual, "check = 228");
+  EXPECT_EQ(board->judgement().actual, "check = 228 = 0xE4");
 }
 
 TEST(Answers, OfABoardAreNotJudgedByWrongDecoding) {

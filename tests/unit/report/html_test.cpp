@@ -66,5 +66,18 @@ TEST(Html, AlignsColumnsOfNumbersRight) {
                                      HasSubstr("<th scope=\"col\" class=\"number\">n</th>")));
 }
 
+TEST(Html, HasFailuresBeforePasses) {
+  Report report;
+  report.rows = {{.verdict = Verdict::kPass, .name = "a.one.good"},
+                 {.verdict = Verdict::kPass, .name = "a.two.good"},
+                 {.verdict = Verdict::kFail, .name = "a.two.bad"},
+                 {.verdict = Verdict::kPass, .name = "a.three.good"}};
+  const auto page = to_html(report);
+  const auto place = [&page](const char* name) { return page.find(name); };
+  EXPECT_LT(place("a.two.bad"), place("a.two.good"));
+  EXPECT_LT(place("a.two.good"), place("a.one.good"));
+  EXPECT_LT(place("a.one.good"), place("a.three.good"));
+}
+
 }  // namespace
 }  // namespace armjig
