@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <array>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "cli/choice.hpp"
 #include "cli/command.hpp"
 
 namespace armjig::cli {
@@ -14,60 +18,82 @@ namespace {
 constexpr auto kHelp =
     "Prints a completion script for a shell.\n"
     "\n"
-    "  source <(armjig completion bash)";
+    "  source <(armjig completion bash)\n"
+    "  source <(armjig completion zsh)       behind compinit\n"
+    "  armjig completion fish | source\n"
+    "\n"
+    "It completes subcommands, options, devices, targets and names of requirements.";
 
-/// The words that may follow the (sub)command `app`.
-std::string words_after(const CLI::App& app) {
-  std::string words;
-  for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    words += sub->get_name() + ' ';
-  }
-  for (const auto* option : app.get_options()) {
-    for (const auto& name : option->get_lnames()) words += "--" + name + ' ';
-  }
-  if (!words.empty()) words.pop_back();
-  return words;
-}
+/// A shell, and the script that asks the program (`armjig __complete WORD...`) what may come.
+/// Where the program knows nothing, files are offered. What may go on gets no blank behind it.
+struct Shell {
+  std::string_view name;
+  std::string_view script;
+};
 
-/// Calls `visit(path, app)` for `armjig` and every subcommand below it.
-void for_each_command(const CLI::App& app, const std::string& path, const auto& visit) {
-  visit(path, app);
-  for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    for_each_command(*sub, path + ' ' + sub->get_name(), visit);
-  }
+// Bash takes a colon or an equals sign for the end of a word, and wants what comes behind it only.
+constexpr std::string_view kBash = R"(_armjig() {
+  local line=${COMP_LINE:0:COMP_POINT} typed
+  local -a words
+  read -ra words <<<"$line"
+  [[ $line == *[[:space:]] ]] && words+=('')
+  typed=${words[-1]}
+  mapfile -t COMPREPLY < <("${words[0]}" __complete "${words[@]:1}" 2>/dev/null)
+  if [[ $typed != [\'\"]* && $COMP_WORDBREAKS == *:* ]]; then
+    COMPREPLY=("${COMPREPLY[@]#"${typed%"${typed##*[:=]}"}"}")
+  fi
+  [[ ${COMPREPLY[0]-} != *[:=?] ]] || compopt -o nospace
 }
+complete -o default -F _armjig armjig
+)";
 
-/// The script follows the words that are subcommands, then offers what may come behind them, and
-/// files. Zsh reads it through its own compatibility layer.
-void print_script(const CLI::App& app, const std::string& shell) {
-  if (shell == "zsh") fmt::print("autoload -U +X bashcompinit && bashcompinit\n");
-  fmt::print(
-      "_armjig() {{\n"
-      "  local -A after\n");
-  for_each_command(app, "armjig", [](const std::string& path, const CLI::App& command) {
-    fmt::print("  after['{}']='{}'\n", path, words_after(command));
-  });
-  fmt::print(
-      "  local path=armjig word\n"
-      "  for word in \"${{COMP_WORDS[@]:1:COMP_CWORD-1}}\"; do\n"
-      "    [[ -v after[\"$path $word\"] ]] && path+=\" $word\"\n"
-      "  done\n"
-      "  COMPREPLY=($(compgen -W \"${{after[$path]}}\" -f -- \"${{COMP_WORDS[COMP_CWORD]}}\"))\n"
-      "}}\n"
-      "complete -o filenames -F _armjig armjig\n");
+constexpr std::string_view kZsh = R"(#compdef armjig
+_armjig() {
+  local -a replies whole open
+  replies=("${(@f)$(${words[1]} __complete "${(@)words[2,CURRENT]}" 2>/dev/null)}")
+  whole=(${replies:#*[:=?]})
+  open=(${(M)replies:#*[:=?]})
+  if (( ! $#whole && ! $#open )); then
+    _files
+    return
+  fi
+  compadd -a whole
+  compadd -S '' -a open
 }
+if [[ ${funcstack[1]} == _armjig ]]; then
+  _armjig "$@"
+else
+  compdef _armjig armjig
+fi
+)";
+
+constexpr std::string_view kFish = R"(function __armjig_complete
+    set -l words (commandline -opc)
+    set -l replies ($words[1] __complete $words[2..-1] (commandline -ct) 2>/dev/null)
+    if test (count $replies) -gt 0
+        printf '%s\n' $replies
+    else
+        __fish_complete_path (commandline -ct)
+    end
+end
+complete -c armjig -f -a '(__armjig_complete)'
+)";
+
+constexpr std::array kShells{Shell{"bash", kBash}, Shell{"zsh", kZsh}, Shell{"fish", kFish}};
 
 }  // namespace
 
 void add_completion(CLI::App& app, Devices /*devices*/, Action& action) {
   auto* completion = app.add_subcommand("completion", kHelp);
-  const auto shell = std::make_shared<std::string>();
-  completion->add_option("SHELL", *shell, "bash or zsh")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh"}));
-  completion->callback([&app, shell, &action] {
-    action = [&app, shell] {
-      print_script(app, *shell);
+  const auto wanted = std::make_shared<std::string>();
+  std::vector<std::string> names;
+  for (const auto& shell : kShells) names.emplace_back(shell.name);
+  completion->add_option("SHELL", *wanted, "which one")->required()->check(one_of(names));
+  completion->callback([wanted, &action] {
+    action = [wanted] {
+      for (const auto& shell : kShells) {
+        if (shell.name == *wanted) fmt::print("{}", shell.script);
+      }
       return Exit::kPassed;
     };
   });

@@ -12,13 +12,17 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/choice.hpp"
 #include "cli/conformance_mutants.hpp"
 #include "cli/device.hpp"
 #include "cli/report_files.hpp"
 #include "cli/target_options.hpp"
+#include "cli/terminal.hpp"
 #include "conformance/run.hpp"
 #include "conformance/suite.hpp"
+#include "harness/core/nearest.hpp"
 #include "harness/report/diff.hpp"
+#include "harness/report/failures.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -46,8 +50,19 @@ struct Options {
   std::string explain;
   RunOptions run;
   ReportFiles files;
+  std::string colour;
   bool list = false;
 };
+
+/// Names of requirements and of cases.
+std::vector<std::string> names_in(const Suite& suite) {
+  std::vector<std::string> names;
+  for (const auto& chapter : suite.chapters) {
+    for (const auto& requirement : chapter.requirements) names.emplace_back(requirement.id);
+    for (const auto& one : chapter.cases) names.push_back(name_of(one));
+  }
+  return names;
+}
 
 bool is_listed(const Requirement& requirement, const Options& options) {
   return requirement.id.find(options.run.selection.filter) != std::string_view::npos;
@@ -65,7 +80,9 @@ Exit list_requirements(const Suite& suite, const Options& options) {
   }
   if (listed > 0) return Exit::kPassed;
   (void)report({ErrorCode::kBadValue, "--filter " + options.run.selection.filter,
-                "it selects no requirement; --list without it shows all"});
+                "it selects no requirement; " +
+                    did_you_mean(options.run.selection.filter, names_in(suite), std::identity{}) +
+                    "--list without it shows all"});
   return Exit::kNothing;
 }
 
@@ -82,7 +99,10 @@ const Requirement* requirement_named(const Suite& suite, const std::string& name
 Exit explain(const Suite& suite, const std::string& name) {
   const auto* requirement = requirement_named(suite, name);
   if (requirement == nullptr) {
-    return report({ErrorCode::kBadValue, "--explain " + name, "--list shows the names"});
+    return report({ErrorCode::kBadValue, "--explain " + name,
+                   "there is no such requirement or case; " +
+                       did_you_mean(name, names_in(suite), std::identity{}) +
+                       "--list shows the names"});
   }
   fmt::print("{} ({}, {}, profile {})\n  {}\n  source: {}\n", requirement->id,
              to_string(requirement->level), to_string(requirement->role),
@@ -129,8 +149,8 @@ std::string command_of(const Options& options) {
 }
 
 /// What was not run has one line, for it may be most of a suite.
-std::string line_of(const ReportRow& row) {
-  if (row.verdict != Verdict::kSkipped) return to_text(row);
+std::string line_of(const ReportRow& row, Style style) {
+  if (row.verdict != Verdict::kSkipped) return to_text(row, style);
   return fmt::format("SKIPPED   {:<36} {}\n", row.name, row.actual);
 }
 
@@ -159,14 +179,16 @@ Exit run(const Device& device, const Suite& suite, Options options) {
   options.run.target = how->target.text;
   options.run.command = command_of(options);
   const auto started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  auto result = run_suite(suite, **bench, options.run, [](const ReportRow& row) {
-    fmt::print("{}", line_of(row));
+  const auto style = style_of(options.colour, stdout);
+  auto result = run_suite(suite, **bench, options.run, [style](const ReportRow& row) {
+    fmt::print("{}", line_of(row, style));
     std::fflush(stdout);
   });
   result.started = started;
   if (how->impairment) result.facts.emplace_back("impairment", to_string(*how->impairment));
-  fmt::print("{}\n", counts_line(result));
+  fmt::print("{}\n", counts_line(result, style));
   print_skipped(result);
+  fmt::print("{}", failures_text(result, style));
   if (const auto written = write_files(result, options.files); !written) {
     return report(written.error());
   }
@@ -186,7 +208,9 @@ Exit conformance(Devices devices, Options options) {
     const auto& filter = options.run.selection.filter;
     (void)report({ErrorCode::kBadValue,
                   filter.empty() ? "--shard " + options.shard : "--filter " + filter,
-                  "it selects no case of this profile and tier; --list shows the requirements"});
+                  "it selects no case of this profile and tier; " +
+                      did_you_mean(filter, names_in(suite), std::identity{}) +
+                      "--list shows the requirements"});
     return Exit::kNothing;
   }
   return run(**device, suite, std::move(options));
@@ -234,10 +258,10 @@ void add_conformance(CLI::App& app, Devices devices, Action& action) {
   command
       ->add_option("--profile", options->profile,
                    "whose expectations, and which device behind emulated:")
-      ->check(CLI::IsMember({"firmware", "documented"}));
+      ->check(one_of({"firmware", "documented"}));
   command->add_option("--filter", options->run.selection.filter, "only what has this in its name");
   command->add_option("--tier", options->tier, "quick leaves out what takes long")
-      ->check(CLI::IsMember({"quick", "full"}));
+      ->check(one_of({"quick", "full"}));
   command->add_option("--seed", options->run.seed, "for bytes that may be any");
   command->add_option("--repeat", options->run.repeat, "run each case so often")
       ->check(CLI::Range(1, 1'000'000));
@@ -248,6 +272,7 @@ void add_conformance(CLI::App& app, Devices devices, Action& action) {
       ->type_name("FILE");
   command->add_option("--explain", options->explain, "say what a requirement demands, and why");
   add_report_files(*command, options->files);
+  add_colour_option(*command, options->colour);
   command->add_flag("--list", options->list, "name the requirements and stop");
   add_diff(*command, action);
   add_conformance_mutants(*command, devices, action);

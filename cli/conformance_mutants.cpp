@@ -10,8 +10,10 @@
 #include <thread>
 #include <utility>
 
+#include "cli/choice.hpp"
 #include "cli/device.hpp"
 #include "cli/report_files.hpp"
+#include "cli/terminal.hpp"
 #include "conformance/mutation.hpp"
 
 namespace armjig::cli {
@@ -29,6 +31,7 @@ struct Options {
   std::string profile = "firmware";
   MutationOptions run;
   ReportFiles files;
+  std::string colour;
   bool list = false;
 };
 
@@ -57,11 +60,12 @@ Exit run(const Device& device, const MutantsEntry& entry, const Options& options
     return Exit::kNothing;
   }
   const auto summary = to_report(*result, suite, options.run);
+  const auto style = style_of(options.colour, stdout);
   for (const auto& row : summary.rows) {
-    if (row.verdict != Verdict::kPass) fmt::print("{}", to_text(row));
+    if (row.verdict != Verdict::kPass) fmt::print("{}", to_text(row, style));
   }
-  for (const auto& section : summary.sections) fmt::print("\n{}", to_text(section));
-  fmt::print("\n{}\n", counts_line(summary));
+  for (const auto& section : summary.sections) fmt::print("\n{}", to_text(section, style));
+  fmt::print("\n{}\n", counts_line(summary, style));
   if (const auto written = write_files(summary, options.files); !written) {
     return report(written.error());
   }
@@ -86,12 +90,13 @@ void add_conformance_mutants(CLI::App& conformance, Devices devices, Action& act
   options->run.threads = std::max(1U, std::thread::hardware_concurrency());
   add_device_argument(*command, options->device, devices);
   command->add_option("--profile", options->profile, "of the device, and whose expectations")
-      ->check(CLI::IsMember({"firmware", "documented"}));
+      ->check(one_of({"firmware", "documented"}));
   command->add_option("--filter", options->run.filter, "only mutants with this in their name");
   command->add_option("--threads", options->run.threads, "at most so many at once")
       ->check(CLI::Range(1, 256));
   command->add_flag("--list", options->list, "name the mutants and stop");
   add_report_files(*command, options->files);
+  add_colour_option(*command, options->colour);
   command->callback([options, devices, &action] {
     action = [options, devices] { return mutants(devices, *options); };
   });

@@ -7,26 +7,31 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "cli/choice.hpp"
 #include "cli/device.hpp"
+#include "conformance/wording.hpp"
 #include "harness/capture/message_json.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
+#include "harness/wire/brief.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig::cli {
 namespace {
 
 constexpr auto kHelp =
-    "Shows what bytes mean, field by field.\n"
+    "Shows what bytes mean, a line for each message.\n"
     "\n"
     "  armjig decode DEVICE 'FF FF FF 34 00 ... 01 02'     hexadecimal digits\n"
     "  armjig decode DEVICE --file session.bin             raw bytes\n"
     "  armjig decode DEVICE --file session.jsonl           a recording\n"
+    "  armjig decode DEVICE -v --file session.jsonl        field by field\n"
     "  some-program | armjig decode DEVICE --file - --json one JSON object for each message\n"
     "\n"
     "What passed on a bus begins with the address, shifted left, as in 24 01 00 00 80 3F.\n"
@@ -43,12 +48,13 @@ struct Options {
   std::string format = "auto";
   std::string direction = "auto";
   bool json = false;
+  bool is_verbose = false;
 };
 
 /// One piece of traffic to decode.
 struct Chunk {
   Direction direction{};
-  Instant time{};
+  std::optional<Instant> time;  ///< none: nobody wrote it down
   std::vector<std::byte> bytes;
   std::uint32_t stream{};  ///< the connection; pieces of several do not belong together
 };
@@ -122,7 +128,7 @@ Direction direction_of(const Options& options, MakeDissector make_dissector, Byt
 Outcome<std::vector<Chunk>> read_chunks(const Options& options, MakeDissector make_dissector) {
   const auto one_chunk = [&](std::vector<std::byte> bytes) {
     const auto direction = direction_of(options, make_dissector, bytes);
-    return std::vector{Chunk{direction, {}, std::move(bytes)}};
+    return std::vector{Chunk{direction, std::nullopt, std::move(bytes)}};
   };
   if (options.file.empty()) {
     std::string text;
@@ -136,6 +142,12 @@ Outcome<std::vector<Chunk>> read_chunks(const Options& options, MakeDissector ma
   if (format == "hex") return parse_hex(options.file, *content).map(one_chunk);
   const auto raw = std::as_bytes(std::span{*content});
   return one_chunk({raw.begin(), raw.end()});
+}
+
+void print(const Message& message, bool has_time, const Options& options) {
+  if (options.json) return fmt::print("{}\n", to_json(message));
+  if (has_time) fmt::print("{:>12.3f} ms ", milliseconds(message.time.time_since_epoch()));
+  fmt::print("{}\n", options.is_verbose ? to_text(message) : to_line(message));
 }
 
 Exit decode(Devices devices, const Options& options) {
@@ -156,17 +168,14 @@ Exit decode(Devices devices, const Options& options) {
   for (const auto& chunk : *chunks) {
     auto& dissector = streams[chunk.stream];
     if (!dissector) dissector = make_dissector();
-    dissector->feed(chunk.direction, chunk.time, chunk.bytes, messages);
+    dissector->feed(chunk.direction, chunk.time.value_or(Instant{}), chunk.bytes, messages);
   }
   for (const auto& [stream, dissector] : streams) dissector->finish(messages);
+  const bool has_times = !chunks->empty() && chunks->front().time;
   bool all_are_messages = true;
   for (const auto& message : messages) {
     all_are_messages = all_are_messages && message.fault.empty();
-    if (options.json) {
-      fmt::print("{}\n", to_json(message));
-    } else {
-      fmt::print("{}\n", to_text(message));
-    }
+    print(message, has_times, options);
   }
   if (messages.empty()) {
     fmt::print(stderr, "armjig decode: there are no bytes to decode\n");
@@ -184,11 +193,12 @@ void add_decode(CLI::App& app, Devices devices, Action& action) {
   command->add_option("HEX", options->hex, "hexadecimal digits, in any number of words");
   command->add_option("--file", options->file, "read this file, '-' for standard input");
   command->add_option("--format", options->format, "what the file holds")
-      ->check(CLI::IsMember({"auto", "raw", "hex", "trace"}))
+      ->check(one_of({"auto", "raw", "hex", "trace"}))
       ->capture_default_str();
   command->add_option("--direction", options->direction, "who sent the bytes")
-      ->check(CLI::IsMember({"auto", "to-device", "from-device"}))
+      ->check(one_of({"auto", "to-device", "from-device"}))
       ->capture_default_str();
+  command->add_flag("-v,--verbose", options->is_verbose, "all bytes, and a line for each field");
   command->add_flag("--json", options->json, "one JSON object a message (docs/schemas)");
   command->callback([options, devices, &action] {
     action = [options, devices] { return decode(devices, *options); };

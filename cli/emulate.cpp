@@ -18,6 +18,7 @@
 #include "cli/device_inputs.hpp"
 #include "cli/program_judge.hpp"
 #include "cli/report_files.hpp"
+#include "cli/terminal.hpp"
 #include "emulators/host/host.hpp"
 #include "emulators/lab/virtual_i2c.hpp"
 
@@ -55,6 +56,7 @@ struct Options {
   bool wants_json = false;
   bool wants_check = false;
   ReportFiles files;
+  std::string colour;
 };
 
 HostOptions host_options(const Options& options) {
@@ -117,7 +119,8 @@ constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
 
 Exit conclude(ProgramCheck& check, const Options& options) {
   const auto result = check.finish();
-  fmt::print("{}\n", options.wants_json ? to_json(result) : to_text(result));
+  fmt::print("{}\n", options.wants_json ? to_json(result)
+                                        : to_text(result, style_of(options.colour, stdout)));
   if (const auto written = write_files(result, options.files); !written) {
     return report(written.error());
   }
@@ -218,6 +221,7 @@ void add_check(CLI::App& command, Options& options) {
       command.add_flag("--check", options.wants_check, "judge the program that talks to it");
   // --json says how to announce, and is the report's form then.
   for (auto* file : add_report_files(command, options.files, "json")) file->needs(check);
+  add_colour_option(command, options.colour);
 }
 
 }  // namespace

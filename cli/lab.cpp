@@ -11,6 +11,7 @@
 #include "cli/device.hpp"
 #include "cli/program_judge.hpp"
 #include "cli/report_files.hpp"
+#include "cli/terminal.hpp"
 #include "emulators/lab/run_program.hpp"
 #include "emulators/lab/virtual_i2c.hpp"
 
@@ -47,12 +48,13 @@ struct Options {
   int number = 1;
   bool wants_check = false;
   ReportFiles files;
+  std::string colour;
   std::vector<std::string> program;
 };
 
 /// Standard output is the program's.
 Exit conclude(const Report& result, const Options& options, Exit of_program) {
-  fmt::print(stderr, "{}\n", to_text(result));
+  fmt::print(stderr, "{}\n", to_text(result, style_of(options.colour, stderr)));
   if (const auto written = write_files(result, options.files); !written) {
     return report(written.error());
   }
@@ -112,6 +114,7 @@ void add_lab(CLI::App& app, Devices devices, Action& action) {
       ->check(CLI::Range(0, 255));
   auto* check = command->add_flag("--check", options->wants_check, "judge the program");
   for (auto* file : add_report_files(*command, options->files)) file->needs(check);
+  add_colour_option(*command, options->colour);
   command->add_option("PROGRAM", options->program, "and its arguments, behind --")->type_name("");
   command->callback([options, devices, &action] {
     action = [options, devices] { return exec(devices, *options); };

@@ -3,16 +3,23 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <exception>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "cli/candidates.hpp"
+#include "cli/choice.hpp"
 #include "cli/device.hpp"
+#include "cli/terminal.hpp"
 #include "harness/core/version.hpp"
 
 namespace armjig::cli {
@@ -37,9 +44,14 @@ constexpr auto kFooter =
     "'armjig SUBCOMMAND --help' has examples.";
 
 /// In the list of subcommands, only the first line of each description: its examples belong to its
-/// own help.
-class FirstLines final : public CLI::Formatter {
+/// own help. All of it is as wide as the terminal.
+class HelpText final : public CLI::Formatter {
  public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    return wrapped(Formatter::make_help(app, std::move(name), mode), help_width());
+  }
+
   std::string make_subcommand(const CLI::App* sub) const override {
     const auto description = sub->get_description();
     return fmt::format("  {:<12} {}\n", sub->get_name(),
@@ -47,26 +59,27 @@ class FirstLines final : public CLI::Formatter {
   }
 };
 
-bool is_option(std::string_view word) { return word.starts_with('-'); }
-
-bool has_subcommand(const CLI::App& app, std::string_view name) {
-  return !app.get_subcommands([name](const CLI::App* sub) { return sub->get_name() == name; })
-              .empty();
-}
-
-std::string names(const CLI::App& app) {
-  std::string names;
-  for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names += ' ' + sub->get_name();
-  }
-  return names;
+/// The last of the subcommands that were understood.
+const CLI::App& chosen_of(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : chosen_of(*chosen.front());
 }
 
 /// The command as far as it was understood: `armjig trace verify`.
 std::string call_of(const CLI::App& app) {
-  const auto chosen = app.get_subcommands();
-  return chosen.empty() ? app.get_name()
-                        : fmt::format("{} {}", app.get_name(), call_of(*chosen.front()));
+  const auto* const parent = app.get_parent();
+  return parent == nullptr ? app.get_name()
+                           : fmt::format("{} {}", call_of(*parent), app.get_name());
+}
+
+/// What is wrong with the command line. Words that nothing takes are told before what is missing,
+/// for they may be what was meant.
+std::string complaint_of(const CLI::App& command, const CLI::ParseError& error) {
+  const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
+  const bool may_be_of_rest =
+      code == CLI::ExitCodes::ExtrasError || code == CLI::ExitCodes::RequiredError;
+  const auto rest = may_be_of_rest ? complaint_of_rest(command) : "";
+  return rest.empty() ? fmt::format("{}; ", error.what()) : rest;
 }
 
 /// CLI11's own codes start at 100; ours are fixed.
@@ -76,7 +89,8 @@ Exit exit_of(const CLI::App& app, const CLI::ParseError& error) {
     app.exit(error);
     return Exit::kPassed;
   }
-  fmt::print(stderr, "armjig: {}; see '{} --help'\n", error.what(), call_of(app));
+  const auto& command = chosen_of(app);
+  fmt::print(stderr, "armjig: {}see '{} --help'\n", complaint_of(command, error), call_of(command));
   return Exit::kUsage;
 }
 
@@ -91,11 +105,30 @@ void check(Devices devices) {
   }
 }
 
+// What shells and tests ask the program for; people see neither.
+constexpr auto kAskedToComplete = "__complete";
+constexpr auto kAskedForCommands = "__commands";
+
+/// Every subcommand below `command` with the names of its arguments and options, as docs/cli.md has
+/// it.
+void print_commands(const CLI::App& command) {
+  for (const auto* sub : subcommands_of(command)) {
+    std::string names;
+    for (const auto* option : sub->get_options()) {
+      if (option->get_name() != "--help") names += fmt::format(" `{}`", option->get_name());
+    }
+    if (subcommands_of(*sub).empty() || !names.empty()) {
+      fmt::print("- `{}`{}{}\n", call_of(*sub), names.empty() ? "" : ":", names);
+    }
+    print_commands(*sub);
+  }
+}
+
 Exit run(int argc, char** argv, Devices devices) {
   check(devices);
   CLI::App app{with_example(kDescription, devices), "armjig"};
   app.footer(kFooter);
-  app.formatter(std::make_shared<FirstLines>());
+  app.formatter(std::make_shared<HelpText>());
   app.set_version_flag("--version", std::string{"armjig "} + kVersion);
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
@@ -104,9 +137,16 @@ Exit run(int argc, char** argv, Devices devices) {
   for (const auto& device : devices) {
     for (const auto add : device.commands) add(app, device, action);
   }
-  if (argc > 1 && !is_option(argv[1]) && !has_subcommand(app, argv[1])) {
-    fmt::print(stderr, "armjig: there is no subcommand '{}'; there are:{}\n", argv[1], names(app));
-    return Exit::kUsage;
+  const std::vector<std::string> words{argv + std::min(argc, 1), argv + argc};
+  if (!words.empty() && words.front() == kAskedToComplete) {
+    for (const auto& word : candidates(app, devices, std::span{words}.subspan(1))) {
+      fmt::print("{}\n", word);
+    }
+    return Exit::kPassed;
+  }
+  if (!words.empty() && words.front() == kAskedForCommands) {
+    print_commands(app);
+    return Exit::kPassed;
   }
   try {
     app.parse(argc, argv);

@@ -30,13 +30,21 @@ if(ARMJIG_BUILD_CLI)
   list(APPEND CPACK_COMPONENTS_ALL dev runtime)
   install_papers(dev libarmjig-dev)
   install_papers(runtime armjig)
-  add_custom_command(OUTPUT armjig.bash COMMAND armjig completion bash > armjig.bash VERBATIM)
+  foreach(shell IN ITEMS bash zsh fish)
+    add_custom_command(OUTPUT armjig.${shell} COMMAND armjig completion ${shell} > armjig.${shell}
+                       VERBATIM)
+  endforeach()
   add_custom_command(OUTPUT 60-armjig.rules COMMAND armjig doctor --udev-rules > 60-armjig.rules
                      VERBATIM)
-  add_custom_target(printed ALL DEPENDS armjig.bash 60-armjig.rules)
+  add_custom_target(printed ALL DEPENDS armjig.bash armjig.zsh armjig.fish
+                                       60-armjig.rules)
   install(TARGETS armjig RUNTIME COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/armjig.bash RENAME armjig
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
+  install(FILES ${PROJECT_BINARY_DIR}/armjig.zsh RENAME _armjig
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
+  install(FILES ${PROJECT_BINARY_DIR}/armjig.fish
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/60-armjig.rules DESTINATION lib/udev/rules.d
           COMPONENT runtime)
   configure_file(packaging/armjig-emulate@.service.in armjig-emulate@.service @ONLY)

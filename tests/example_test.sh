@@ -52,7 +52,7 @@ count_glue() {
 }
 
 use_it() {
-  gripper 0 decode gripper 01 03 00 07 00 01 35 CB
+  gripper 0 decode gripper -v 01 03 00 07 00 01 35 CB
   says 'register +7$'
   gripper 0 conformance gripper --target emulated:
   says '^[0-9]+ passed, 0 failed$'

@@ -17,6 +17,8 @@ check_program() {
   "$prefix/bin/armjig" --version | grep -x 'armjig [0-9.]*'
   "$prefix/bin/armjig" trace verify "$prefix/share/armjig/captures" | tail -n 1
   grep -q 'complete .* armjig$' "$prefix/share/bash-completion/completions/armjig"
+  grep -qx '#compdef armjig' "$prefix/share/zsh/vendor-completions/_armjig"
+  grep -q '^complete -c armjig ' "$prefix/share/fish/vendor_completions.d/armjig.fish"
   grep -q 'parol6' "$prefix/lib/udev/rules.d/60-armjig.rules"
 }
 

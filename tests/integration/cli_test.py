@@ -6,11 +6,16 @@ Each row is a command line, what goes to standard input, the exit code, and word
 standard output (or, with a leading "!", on standard error).
 """
 
+import fcntl
 import json
+import os
 import pathlib
+import pty
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 
 ARMJIG = sys.argv[1]
 SOURCE = pathlib.Path(sys.argv[2])
@@ -70,6 +75,27 @@ def rows(folder):
         # Misuse: one clear line, exit code 2.
         ("", "", 2, ["!subcommand is required"]),
         ("frobnicate", "", 2, ["!no subcommand 'frobnicate'", "!conformance"]),
+        # The nearest name that there is.
+        ("conformence parol6", "", 2, ["!did you mean 'conformance'?"]),
+        ("trace verfy x", "", 2, ["!no subcommand 'verfy'; did you mean 'verify'?"]),
+        ("conformance parol6 --targt emulated:", "", 2, ["!no option --targt; did you mean '--target'?"]),
+        ("conformance parl6 --list", "", 2, ["!did you mean 'parol6'?"]),
+        ("conformance parol6 --target emulted:", "", 2, ["!did you mean 'emulated:'?"]),
+        ("conformance parol6 --target emulated:?profil=firmware", "", 2, ["!did you mean 'profile'?"]),
+        ("conformance parol6 --target emulated:?profile=firmwear", "", 2, ["!did you mean 'firmware'?"]),
+        ("conformance parol6 --target emulated:?fault=zeroo:io", "", 2, ["!did you mean 'zero'?"]),
+        ("conformance parol6 --target emulated: --profile documentd", "", 2,
+         ["!--profile: there is no 'documentd'; did you mean 'documented'?"]),
+        ("conformance parol6 --target emulated: --allow mvoe", "", 2, ["!did you mean 'move'?"]),
+        ("conformance parol6 --target emulated: --impair lsos=1%", "", 2, ["!did you mean 'loss'?"]),
+        ("conformance parol6 --explain parol6.frame.brust", "", 2, ["!did you mean 'parol6.frame.burst'?"]),
+        ("conformance parol6 --list --filter parol6.frame.brust", "", 4,
+         ["!did you mean 'parol6.frame.burst'?"]),
+        ("kin fk 1 --arm jaco22", "", 2, ["!did you mean 'jaco2'?"]),
+        # What is wrong, and nothing that contradicts it.
+        ("conformance demo", "", 2, ["!armjig: --target is missing: say where the device is"]),
+        ("conformance demo --target emulated: --shard 3/2", "", 2, ["!armjig: --shard 3/2: write which"]),
+        ("conformance demo --target emulated: more", "", 2, ["!'more' is one word too many"]),
         ("conformance parol6", "", 2, ["!--target"]),
         ("conformance parol6 --target nonsense", "", 2, ["!'nonsense'"]),
         ("conformance parol6 --target emulated:?x=1", "", 2, ["!no such option"]),
@@ -154,8 +180,17 @@ def rows(folder):
         ("conformance mutants demo", "", 0, ["100.0 %", "0 failed"]),
         ("conformance demo --target emulated:", "", 0, ["3 passed, 0 failed"]),
         (f"conformance parol6 --target {faulty}", "", 1,
-         ["expected     speed.j1", "FF FF FF 38", f"--target '{faulty}' --filter"]),
-        (f"decode parol6 {IDLE}", "", 0, ["command            255 (idle)"]),
+         ["expected     speed.j1", "FF FF FF 38", f"--target '{faulty}' --filter",
+          "> speed.j1 = 6488064 steps/s = 0x630000 (bytes 22 to 24: 63 00 00)", "... 44 more",
+          "\nFAIL      parol6.receive.store-stays           expected speed.j1 = 99 steps/s = 0x000063"]),
+        ("conformance demo --target emulated: --color always", "", 0,
+         ["\x1b[32mPASS     \x1b[0m demo.query", "\x1b[32m3 passed\x1b[0m"]),
+        ("conformance demo --target emulated:", "", 0, ["PASS      demo.query", "\n3 passed, 0 failed"]),
+        ("conformance demo --target emulated: --color sometimes", "", 2, ["!--color"]),
+        (f"decode parol6 {IDLE} -v", "", 0, ["command            255 (idle)"]),
+        (f"decode parol6 {IDLE}", "", 0, ["to_device   command  command 255 (idle)  check 228\n"]),
+        (f"decode parol6 --file {SOURCE}/captures/parol6/outputs_sweep_a.jsonl", "", 0,
+         ["       2.000 ms to_device   command  command 255 (idle)", "ms from_device telemetry  homed"]),
         ("decode parol6 --file - --json", IDLE, 0, ['"armjig.message/1"', '"text":"255 (idle)"']),
         ("decode parol6 --file -", "", 4, ["!no bytes"]),
         (f"decode parol6 --direction to-device {IDLE[:40]}", "", 1, ["cut short"]),
@@ -167,7 +202,9 @@ def rows(folder):
          ["!broken.jsonl:2:", "traces: 1 identical: 1 different: 0"]),
         ("devices --json", "", 0, ['"armjig.devices/1"']),
         ("doctor --udev-rules", "", 0, ['idVendor}=="0483"']),
-        ("completion bash", "", 0, ["_armjig"]),
+        ("completion bash", "", 0, ["complete -o default -F _armjig armjig"]),
+        ("completion zsh", "", 0, ["#compdef armjig"]),
+        ("completion fish", "", 0, ["complete -c armjig"]),
         ("kin fk 90 -90 180 0 0 180", "", 0, ["262.5700", "commander"]),
         ("kin fk 0 0 0 0 0 0", "", 1, ["114.6700", "!j2 is beyond its limits"]),
         ("kin fk 1 2", "", 2, ["!6 joints"]),
@@ -253,8 +290,52 @@ def check(arguments, typed, exit_code, words):
     return ", ".join(complaints)
 
 
+def on_terminal(arguments, environment, columns=0):
+    """What the program prints on a terminal so many columns wide; 0: one that does not know."""
+    user_end, terminal = pty.openpty()
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("4H", 24, columns, 0, 0))
+    with subprocess.Popen([ARMJIG] + arguments.split(), stdin=terminal, stdout=terminal,
+                          env={"TERM": "xterm"} | environment) as program:
+        os.close(terminal)
+        text = b""
+        try:
+            while piece := os.read(user_end, 65536):
+                text += piece
+        except OSError:  # nobody has the other end any more
+            pass
+        program.wait(timeout=60)
+    os.close(user_end)
+    return text.decode()
+
+
+def widest(text):
+    return max(len(line) for line in text.splitlines())
+
+
+def complaints_of_terminals():
+    """What is wrong with colours and the width of help."""
+    run = "conformance demo --target emulated:"
+    for environment, more, is_coloured in [
+            ({}, "", True), ({"NO_COLOR": "1"}, "", False), ({"NO_COLOR": ""}, "", True),
+            ({"TERM": "dumb"}, "", False), ({"NO_COLOR": "1"}, " --color always", True),
+            ({}, " --color never", False)]:
+        if ("\x1b[32mPASS" in on_terminal(run + more, environment)) != is_coloured:
+            yield f"with {environment}{more}: {'no ' if is_coloured else ''}colours"
+    for environment, columns, width in [({}, 0, 80), ({}, 100, 100), ({}, 20, 60),
+                                        ({"COLUMNS": "70"}, 100, 70), ({"COLUMNS": "x"}, 90, 90)]:
+        got = widest(on_terminal("--help", environment, columns))
+        if not width - 12 <= got <= width:
+            yield f"help with {environment} on {columns} columns is {got} wide, not {width}"
+    piped = subprocess.run([ARMJIG, "--help"], env={}, capture_output=True, text=True, check=True)
+    if widest(piped.stdout) > 80:
+        yield f"help is {widest(piped.stdout)} wide in a pipe"
+
+
 def main():
     failures = 0
+    for complaint in complaints_of_terminals():
+        failures += 1
+        print(complaint)
     with tempfile.TemporaryDirectory() as name:
         table = rows(pathlib.Path(name))
         for row in table:
@@ -264,7 +345,7 @@ def main():
             if complaint:
                 failures += 1
                 print(f"armjig {row[0]}: {complaint}")
-    print(f"{len(table) - failures} of {len(table)} command lines behave")
+    print(f"{failures} of {len(table)} command lines and of the terminals misbehave")
     return 1 if failures else 0
 
 
