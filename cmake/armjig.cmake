@@ -20,6 +20,19 @@ if(ARMJIG_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${ARMJIG_CCACHE})
 endif()
 
+# Compiles into the library armjig_NAME where requirements stand in docs/spec (document_lines.cmake).
+function(armjig_document_lines name)
+  file(GLOB documents CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
+       ${PROJECT_SOURCE_DIR}/docs/spec/*.md)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/document_lines.cmake)
+  set(table ${PROJECT_BINARY_DIR}/document_lines.cpp)
+  add_custom_command(OUTPUT ${table}
+                     COMMAND ${CMAKE_COMMAND} -D TABLE=${table} -P ${script} ${documents}
+                     DEPENDS ${documents} ${script}
+                     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
+  target_sources(armjig_${name} PRIVATE ${table})
+endfunction()
+
 # armjig_library(NAME SOURCES folder... [ONLY name... | EXCEPT name...] [EMBEDDABLE] [EXACT_FLOATS]
 #                [PUBLIC target...] [PRIVATE target...] [HEADERS_OF target...])
 #

@@ -367,6 +367,7 @@ Report to_report(const MutationResult& result, const Suite& suite, const Mutatio
     row.actual = "by none";
     report.rows.push_back(std::move(row));
   }
+  for (auto& row : report.rows) row.document = suite.document.path;
   report.sections.push_back(rates_of(result));
   return report;
 }

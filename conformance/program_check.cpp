@@ -193,7 +193,7 @@ Report ProgramCheck::finish() {
 }
 
 ReportRow ProgramCheck::row_of(const Requirement& requirement) const {
-  auto row = row_about(requirement);
+  auto row = row_about(requirement, entry_.document);
   row.name = requirement.id;
   row.summary = requirement.text;
   const auto found = records_.find(requirement.id);

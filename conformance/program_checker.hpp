@@ -96,6 +96,7 @@ struct ProgramCheckEntry {
   std::string_view device;
   std::span<const Requirement> (*requirements)() noexcept;
   std::unique_ptr<ProgramChecker> (*make)(const LinkNoise& noise);
+  Document document{};  ///< none: reports name no place
 };
 
 template <class Checker>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "harness/report/report.hpp"
@@ -48,7 +49,23 @@ struct Requirement {
   std::string_view unobservable{};
 };
 
+/// Where a requirement stands in a document; lines count from 1.
+struct DocumentLine {
+  std::string_view requirement;
+  std::uint32_t line{};
+};
+
+/// What has the sentences of a device's requirements, for reports that point there.
+struct Document {
+  /// A URI from the root of the project that the document belongs to; empty: there is none.
+  std::string_view path{};
+  std::span<const DocumentLine> lines{};
+};
+
+/// A document of docs/spec, by its path there, with its lines when this was built.
+[[nodiscard]] Document shipped_document(std::string_view path) noexcept;
+
 /// A row of a report about one, with nothing found.
-[[nodiscard]] ReportRow row_about(const Requirement& requirement);
+[[nodiscard]] ReportRow row_about(const Requirement& requirement, const Document& document);
 
 }  // namespace armjig

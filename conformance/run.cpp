@@ -231,7 +231,7 @@ class Run {
   }
 
   [[nodiscard]] ReportRow row_of(const Case& one, Finding finding) const {
-    auto row = row_about(requirement_of(suite_, one));
+    auto row = row_about(requirement_of(suite_, one), suite_.document);
     row.verdict = finding.judgement.verdict;
     row.name = name_of(one);
     row.summary = one.rule;
@@ -244,6 +244,7 @@ class Run {
   }
 
   void add(ReportRow row) {
+    row.document = suite_.document.path;
     on_row_(row);
     report_.rows.push_back(std::move(row));
   }

@@ -66,6 +66,7 @@ struct Suite {
   std::string_view version;  ///< of the catalogue; changes with every requirement and case
   std::span<const Chapter> chapters;
   std::span<const StartState> starts;
+  Document document{};  ///< none: reports name no place
 };
 
 /// The requirement of that id, or nullptr.

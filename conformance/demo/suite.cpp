@@ -77,7 +77,9 @@ constexpr std::array kChapters{Chapter{"The machine", kRequirements, kCases}};
 
 }  // namespace
 
-Suite suite() noexcept { return {"demo", "1", kChapters, kStarts}; }
+Suite suite() noexcept {
+  return {"demo", "1", kChapters, kStarts, shipped_document("docs/spec/demo.md")};
+}
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<StreamPort> rig, const RigOptions& /*how*/) {
   return std::make_unique<MachineBench>(std::move(rig));

@@ -35,7 +35,7 @@ Suite suite() noexcept {
       Chapter{"Pen", pen_requirements(), {}},
       Chapter{"Masters", programs::host_requirements(), {}},
   };
-  return {"morap", "0.2", kChapters, kStarts};
+  return {"morap", "0.2", kChapters, kStarts, shipped_document("docs/spec/morap.md")};
 }
 
 }  // namespace armjig::morap::conformance

@@ -36,7 +36,7 @@ Suite suite() noexcept {
       Chapter{"Between the chapters", {}, between_cases()},
       Chapter{"Host programs", programs::host_requirements(), {}},
   };
-  return {"parol6", "0.3", kChapters, kStarts};
+  return {"parol6", "0.3", kChapters, kStarts, shipped_document("docs/spec/parol6.md")};
 }
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<StreamPort> rig, const RigOptions& /*how*/) {

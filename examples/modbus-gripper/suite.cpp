@@ -483,7 +483,7 @@ constexpr std::array kEquivalents{EquivalentFault{"stuck:address", "it has only 
 
 }  // namespace
 
-Suite suite() noexcept { return {"gripper", "1", kChapters, kStarts}; }
+Suite suite() noexcept { return {"gripper", "1", kChapters, kStarts, {"suite.cpp"}}; }
 
 std::unique_ptr<Bench> make_bench(Rig<StreamPort> rig, unsigned baud, bool is_emulated) {
   return std::make_unique<GripperBench>(std::move(rig), baud, is_emulated);

@@ -50,6 +50,8 @@ struct ReportRow {
   Level level{};            ///< of the requirement
   std::string demand;       ///< the requirement's sentence
   std::string source;       ///< where the requirement is written or seen
+  std::string document{};   ///< the file that has it, from the root of its project; empty: none
+  std::uint32_t line{};     ///< of the requirement in there, from 1; 0: not known
   std::string expected;
   std::string actual;    ///< what came instead, or why it was skipped or showed nothing
   std::string evidence;  ///< several lines: the last messages, decoded
@@ -125,7 +127,8 @@ enum class Style : std::uint8_t { kPlain, kColour };
 [[nodiscard]] std::string to_junit(const Report& report);
 
 /// SARIF 2.1.0 for code scanning: requirements are the rules, rows that failed, were flaky or
-/// deviated the results. Trouble with the rig is a notification of the tool.
+/// deviated the results, each at its requirement's line. A row without document is at line 1 of
+/// armjig.sarif, the report's usual name. Trouble with the rig is a notification of the tool.
 [[nodiscard]] std::string to_sarif(const Report& report);
 
 /// One page that needs no network, with search, filters and plots.

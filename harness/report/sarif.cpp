@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <unordered_map>
@@ -35,6 +36,21 @@ std::string_view rule_id(const ReportRow& row) noexcept {
   return row.requirement.empty() ? row.name : row.requirement;
 }
 
+/// Where rows without a document point to: code scanning refuses results without a file.
+constexpr std::string_view kReport = "armjig.sarif";
+
+Json place_of(const ReportRow& row) {
+  const auto uri = row.document.empty() ? kReport : std::string_view{row.document};
+  return {{"artifactLocation", {{"uri", uri}}},
+          {"region", {{"startLine", std::max(row.line, 1U)}}}};
+}
+
+std::string help_of(const ReportRow& row) {
+  auto help = "Source: " + row.source;
+  if (row.line > 0) help += fmt::format(" ({}, line {})", row.document, row.line);
+  return help;
+}
+
 Json message(std::string_view text) { return {{"text", text}}; }
 
 /// The requirements of all rows, passed ones too, each once.
@@ -58,7 +74,7 @@ class Rules {
     Json rule{{"id", id},
               {"shortDescription", message(row.demand.empty() ? row.summary : row.demand)},
               {"defaultConfiguration", {{"level", level_of(row.level)}}}};
-    if (!row.source.empty()) rule["help"] = message("Source: " + row.source);
+    if (!row.source.empty()) rule["help"] = message(help_of(row));
     if (!row.requirement.empty()) rule["properties"]["level"] = to_string(row.level);
     json_.push_back(std::move(rule));
   }
@@ -74,7 +90,7 @@ Json result(const ReportRow& row, std::size_t rule_index) {
             {"ruleIndex", rule_index},
             {"level", level_of(row)},
             {"message", message(text)}};
-  Json location;
+  Json location{{"physicalLocation", place_of(row)}};
   location["logicalLocations"] =
       Json::array({Json{{"fullyQualifiedName", row.name}, {"kind", "case"}}});
   json["locations"] = Json::array({std::move(location)});

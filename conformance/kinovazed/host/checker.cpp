@@ -121,7 +121,8 @@ class HostChecker final : public ProgramChecker {
 }  // namespace
 
 ProgramCheckEntry program_check() noexcept {
-  return {"kinovazed", host_requirements, make_checker<HostChecker>};
+  return {"kinovazed", host_requirements, make_checker<HostChecker>,
+          shipped_document("docs/spec/kinovazed.md")};
 }
 
 }  // namespace armjig::kinovazed::programs

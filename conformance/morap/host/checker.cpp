@@ -246,7 +246,8 @@ class HostChecker final : public ProgramChecker {
 }  // namespace
 
 ProgramCheckEntry program_check() noexcept {
-  return {"morap", host_requirements, make_checker<HostChecker>};
+  return {"morap", host_requirements, make_checker<HostChecker>,
+          shipped_document("docs/spec/morap.md")};
 }
 
 }  // namespace armjig::morap::programs

@@ -63,7 +63,8 @@ class HostChecker final : public ProgramChecker {
 }  // namespace
 
 ProgramCheckEntry program_check() noexcept {
-  return {"parol6", host_requirements, make_checker<HostChecker>};
+  return {"parol6", host_requirements, make_checker<HostChecker>,
+          shipped_document("docs/spec/parol6.md")};
 }
 
 }  // namespace armjig::parol6::programs

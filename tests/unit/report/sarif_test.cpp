@@ -23,6 +23,17 @@ std::vector<std::string> values(const Json& array, const char* key) {
   return values;
 }
 
+/// Of each result, as FILE:LINE.
+std::vector<std::string> places(const Json& run) {
+  std::vector<std::string> places;
+  for (const auto& result : run["results"]) {
+    const auto& place = result["locations"][0]["physicalLocation"];
+    places.push_back(place["artifactLocation"]["uri"].get<std::string>() + ':' +
+                     std::to_string(place["region"]["startLine"].get<int>()));
+  }
+  return places;
+}
+
 TEST(Sarif, IsValidAgainstTheSchema) {
   for (const auto& report :
        {Report{}, test::one_of_each(), test::nasty_report(), test::drive_report()}) {
@@ -62,6 +73,24 @@ TEST(Sarif, TakesARowWithoutRequirementForItsOwnRule) {
   auto report = test::one_of_each();
   report.rows[1].requirement.clear();
   EXPECT_EQ(run_of(report)["results"][0]["ruleId"], "parol6.telemetry.layout");
+}
+
+TEST(Sarif, PointsToTheLineOfTheRequirement) {
+  auto report = test::one_of_each();
+  for (auto& row : report.rows) row.document = "docs/spec/parol6.md";
+  report.rows[1].line = 17;
+  EXPECT_TRUE(test::is_valid_json(to_sarif(report), "tests/data/sarif-subset.schema.json"));
+  const auto run = run_of(report);
+  EXPECT_THAT(places(run), ElementsAre("docs/spec/parol6.md:17", "docs/spec/parol6.md:1",
+                                       "docs/spec/parol6.md:1"));
+  const auto rule = run["results"][0]["ruleIndex"].get<std::size_t>();
+  EXPECT_EQ(run["tool"]["driver"]["rules"][rule]["help"]["text"],
+            "Source: section 4.2 of the made-up manual (docs/spec/parol6.md, line 17)");
+}
+
+TEST(Sarif, OfADeviceWithoutADocumentPointsToTheReport) {
+  EXPECT_THAT(places(run_of(test::one_of_each())),
+              ElementsAre("armjig.sarif:1", "armjig.sarif:1", "armjig.sarif:1"));
 }
 
 TEST(Sarif, BlamesTheRigNotTheDevice) {
