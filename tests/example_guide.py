@@ -16,6 +16,12 @@ import sys
 BLOCK = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
+def named_blocks(page):
+    """The blocks of a page that name a file, by that name."""
+    text = pathlib.Path(page).read_text(encoding="utf-8")
+    return {name: block for _, name, block in BLOCK.findall(text) if name}
+
+
 def is_quoted(block, source):
     """All pieces stand in the source, one after the other."""
     place = 0
