@@ -22,10 +22,11 @@ check_program() {
   grep -q 'parol6' "$prefix/lib/udev/rules.d/60-armjig.rules"
 }
 
-# A project that knows only the prefix finds the libraries in it, and runs.
+# check_libraries PREFIX CONSUMER...: projects that know only the prefix find the libraries in it, and
+# run.
 check_libraries() {
   local consumer
-  for consumer in embedded whole; do
+  for consumer in "${@:2}"; do
     cmake -G Ninja -S "tests/consumer/$consumer" -B "$work/$consumer" --fresh \
       -DCMAKE_PREFIX_PATH="$1"
     cmake --build "$work/$consumer" -j "$(nproc)"
@@ -77,12 +78,12 @@ check_bare_systems() {
 
 cmake --install "$build" --prefix "$work/installed" >/dev/null
 check_program "$work/installed"
-check_libraries "$work/installed"
+check_libraries "$work/installed" embedded whole library
 
 make_packages
 for package in "$work"/packages/*.deb; do dpkg -x "$package" "$work/unpacked"; done
 check_program "$work/unpacked/usr"
-check_libraries "$work/unpacked/usr"
+check_libraries "$work/unpacked/usr" embedded whole
 if [[ ${CI:-} == true ]] && ((EUID == 0)); then
   check_dpkg
   check_bare_systems
