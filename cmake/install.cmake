@@ -10,7 +10,10 @@ install(EXPORT armjigEmbeddedTargets NAMESPACE armjig:: DESTINATION ${config_dir
         COMPONENT embedded)
 install(FILES cmake/armjigConfig.cmake ${PROJECT_BINARY_DIR}/armjigConfigVersion.cmake
         DESTINATION ${config_dir} COMPONENT embedded)
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT docs)
+# Packages have the licence in another form, in what install_papers() installs.
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT docs)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 
 # The papers of a Debian package, left out of a plain installation.
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
@@ -30,21 +33,32 @@ if(ARMJIG_BUILD_CLI)
   list(APPEND CPACK_COMPONENTS_ALL dev runtime)
   install_papers(dev libarmjig-dev)
   install_papers(runtime armjig)
-  foreach(shell IN ITEMS bash zsh fish)
-    add_custom_command(OUTPUT armjig.${shell} COMMAND armjig completion ${shell} > armjig.${shell}
-                       VERBATIM)
-  endforeach()
+  # install_completion(SHELL PATH): where the shell looks for it, below share.
+  function(install_completion shell path)
+    set(script ${PROJECT_BINARY_DIR}/armjig.${shell})
+    add_custom_command(OUTPUT ${script} COMMAND armjig completion ${shell} > ${script} VERBATIM)
+    cmake_path(GET path PARENT_PATH folder)
+    cmake_path(GET path FILENAME name)
+    install(FILES ${script} RENAME ${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder}
+            COMPONENT runtime)
+    set(printed ${printed} ${script} PARENT_SCOPE)
+  endfunction()
+  install_completion(bash bash-completion/completions/armjig)
+  install_completion(zsh zsh/vendor-completions/_armjig)
+  install_completion(fish fish/vendor_completions.d/armjig.fish)
+  add_custom_command(OUTPUT armjig.1.gz
+                     COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:armjig>
+                             -D VERSION=${PROJECT_VERSION}
+                             -D DOCUMENTS=${CMAKE_INSTALL_FULL_DOCDIR}/docs -D PAGE=armjig.1
+                             -P ${PROJECT_SOURCE_DIR}/cmake/man_page.cmake
+                     COMMAND gzip -9nf armjig.1
+                     DEPENDS armjig cmake/man_page.cmake VERBATIM)
   add_custom_command(OUTPUT 60-armjig.rules COMMAND armjig doctor --udev-rules > 60-armjig.rules
                      VERBATIM)
-  add_custom_target(printed ALL DEPENDS armjig.bash armjig.zsh armjig.fish
-                                       60-armjig.rules)
+  add_custom_target(printed ALL DEPENDS ${printed} armjig.1.gz 60-armjig.rules)
   install(TARGETS armjig RUNTIME COMPONENT runtime)
-  install(FILES ${PROJECT_BINARY_DIR}/armjig.bash RENAME armjig
-          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
-  install(FILES ${PROJECT_BINARY_DIR}/armjig.zsh RENAME _armjig
-          DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
-  install(FILES ${PROJECT_BINARY_DIR}/armjig.fish
-          DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT runtime)
+  install(FILES ${PROJECT_BINARY_DIR}/armjig.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+          COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/60-armjig.rules DESTINATION lib/udev/rules.d
           COMPONENT runtime)
   configure_file(packaging/armjig-emulate@.service.in armjig-emulate@.service @ONLY)

@@ -19,7 +19,20 @@ check_program() {
   grep -q 'complete .* armjig$' "$prefix/share/bash-completion/completions/armjig"
   grep -qx '#compdef armjig' "$prefix/share/zsh/vendor-completions/_armjig"
   grep -q '^complete -c armjig ' "$prefix/share/fish/vendor_completions.d/armjig.fish"
+  check_documents "$prefix"
   grep -q 'parol6' "$prefix/lib/udev/rules.d/60-armjig.rules"
+}
+
+# All of docs/, with specification and schemas; and a manual page with every subcommand of the help.
+check_documents() {
+  local prefix=$1 subcommand subcommands
+  diff -r docs "$prefix/share/doc/armjig/docs"
+  [[ -s $prefix/share/doc/armjig/README.md ]]
+  subcommands=$("$prefix/bin/armjig" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z0-9]*\) .*/\1/p')
+  [[ -n $subcommands ]]
+  for subcommand in $subcommands; do
+    zgrep -qxF ".SS armjig $subcommand" "$prefix/share/man/man1/armjig.1.gz"
+  done
 }
 
 # check_libraries PREFIX CONSUMER...: projects that know only the prefix find the libraries in it, and
