@@ -16,6 +16,11 @@ namespace armjig {
 struct TomlTable::Part {
   const toml::table* table{};
   std::set<std::string, std::less<>> asked;
+
+  const toml::node* ask(std::string_view key) {
+    asked.emplace(key);
+    return table->get(key);
+  }
 };
 
 struct TomlTable::File {
@@ -66,62 +71,56 @@ Outcome<TomlTable> TomlTable::parse(std::string_view text, std::string path) {
   return TomlTable{std::move(file), std::move(part)};
 }
 
-std::optional<double> TomlTable::number(std::string_view key) {
-  part_->asked.emplace(key);
-  const auto* node = part_->table->get(key);
+template <class Value, class Read>
+std::optional<Value> TomlTable::take(std::string_view key, std::string_view what, Read read) {
+  const auto* node = part_->ask(key);
   if (node == nullptr) return std::nullopt;
-  if (const auto value = node->value<double>(); value && node->is_number()) return value;
-  complain(key, fmt::format("{} has to be a number", key));
-  return std::nullopt;
+  std::optional<Value> value = read(*node);
+  if (!value) complain(key, fmt::format("{} has to be {}", key, what));
+  return value;
+}
+
+std::optional<double> TomlTable::number(std::string_view key) {
+  return take<double>(key, "a number", [](const toml::node& node) {
+    return node.is_number() ? node.value<double>() : std::nullopt;
+  });
 }
 
 std::optional<std::int64_t> TomlTable::integer(std::string_view key, std::int64_t least,
                                                std::int64_t most) {
-  part_->asked.emplace(key);
-  const auto* node = part_->table->get(key);
-  if (node == nullptr) return std::nullopt;
-  const auto value = node->value_exact<std::int64_t>();
-  if (value && *value >= least && *value <= most) return value;
-  complain(key, fmt::format("{} has to be an integer from {} to {}", key, least, most));
-  return std::nullopt;
+  const auto what = fmt::format("an integer from {} to {}", least, most);
+  return take<std::int64_t>(key, what, [&](const toml::node& node) {
+    const auto value = node.value_exact<std::int64_t>();
+    return value && *value >= least && *value <= most ? value : std::nullopt;
+  });
 }
 
 std::optional<bool> TomlTable::boolean(std::string_view key) {
-  part_->asked.emplace(key);
-  const auto* node = part_->table->get(key);
-  if (node == nullptr) return std::nullopt;
-  if (const auto value = node->value_exact<bool>()) return value;
-  complain(key, fmt::format("{} has to be true or false", key));
-  return std::nullopt;
+  return take<bool>(key, "true or false",
+                    [](const toml::node& node) { return node.value_exact<bool>(); });
 }
 
 std::optional<std::string> TomlTable::text(std::string_view key) {
-  part_->asked.emplace(key);
-  const auto* node = part_->table->get(key);
-  if (node == nullptr) return std::nullopt;
-  if (auto value = node->value_exact<std::string>()) return value;
-  complain(key, fmt::format("{} has to be a text in quotes", key));
-  return std::nullopt;
+  return take<std::string>(key, "a text in quotes",
+                           [](const toml::node& node) { return node.value_exact<std::string>(); });
 }
 
 std::optional<std::vector<double>> TomlTable::numbers(std::string_view key) {
-  part_->asked.emplace(key);
-  const auto* node = part_->table->get(key);
-  if (node == nullptr) return std::nullopt;
-  const auto* array = node->as_array();
-  std::vector<double> values;
-  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
-    const auto& element = (*array)[i];
-    if (element.is_number()) values.push_back(*element.value<double>());
-  }
-  if (array != nullptr && values.size() == array->size()) return values;
-  complain(key, fmt::format("{} has to be a list of numbers", key));
-  return std::nullopt;
+  using Numbers = std::vector<double>;
+  return take<Numbers>(key, "a list of numbers", [](const toml::node& node) {
+    const auto* array = node.as_array();
+    if (array == nullptr) return std::optional<Numbers>{};
+    Numbers values;
+    for (const auto& element : *array) {
+      if (!element.is_number()) return std::optional<Numbers>{};
+      values.push_back(*element.value<double>());
+    }
+    return std::optional{std::move(values)};
+  });
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) {
-  part_->asked.emplace(key);
-  const auto* node = part_->table->get(key);
+  const auto* node = part_->ask(key);
   std::vector<TomlTable> found;
   if (node == nullptr) return found;
   const auto* array = node->as_array();

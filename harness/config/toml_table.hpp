@@ -48,6 +48,10 @@ class TomlTable {
   struct File;
   struct Part;
   explicit TomlTable(std::shared_ptr<File> file, std::shared_ptr<Part> part);
+  /// What `read` makes of the value of `key`. If that is nothing, complains that it has to be
+  /// `what`.
+  template <class Value, class Read>
+  [[nodiscard]] std::optional<Value> take(std::string_view key, std::string_view what, Read read);
 
   std::shared_ptr<File> file_;
   std::shared_ptr<Part> part_;
