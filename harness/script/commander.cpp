@@ -11,8 +11,6 @@
 namespace armjig::script {
 namespace {
 
-constexpr std::size_t kMostErrors = 20;
-
 /// What the commander does before it runs a program: every `( ... )` becomes `()`, and what comes
 /// out has to be a name with its parentheses. Nothing if it is.
 std::optional<Diagnostic> check_name(const Line& line) {
@@ -49,20 +47,11 @@ std::string_view trimmed(std::string_view text) noexcept {
 }
 
 /// A number with blanks around it, with or without exponent.
-std::optional<double> read_float(std::string_view text) noexcept {
+template <class Value>
+std::optional<Value> read_number(std::string_view text) noexcept {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
-  return value;
-}
-
-std::optional<int> read_integer(std::string_view text) noexcept {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  int value = 0;
+  Value value{};
   const auto* const end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, value);
   if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
@@ -70,7 +59,7 @@ std::optional<int> read_integer(std::string_view text) noexcept {
 }
 
 Command read_delay(std::string_view arguments) {
-  const auto seconds = read_float(arguments);
+  const auto seconds = read_number<double>(arguments);
   if (!seconds) return stops(fmt::format("the delay {} is no number", quoted(arguments)));
   if (!(*seconds > 0.01)) return stops("a delay is longer than 0.01 s");
   if (*seconds > kLongestTime) return stops("a delay of more than an hour is not planned here");
@@ -94,7 +83,7 @@ Command read_gripper(std::string_view arguments) {
     const auto comma = arguments.find(',');
     const bool is_last = i + 1 == values.size();
     if (is_last != (comma == std::string_view::npos)) return skipped("it takes three numbers");
-    const auto value = read_integer(arguments.substr(0, comma));
+    const auto value = read_number<int>(arguments.substr(0, comma));
     if (!value) return skipped("its arguments are whole numbers");
     if (*value < kRanges[i].lowest || *value > kRanges[i].highest) {
       return skipped(fmt::format("{} is not between {} and {}", *value, kRanges[i].lowest,
@@ -223,27 +212,6 @@ Statement read_statement(const Line& line, std::vector<Diagnostic>& remarks) {
   return statement;
 }
 
-/// First and last lines, and a `Begin()` that is not reached as the first one.
-void check_frame(Program& program, std::vector<Diagnostic>& errors) {
-  auto& statements = program.statements;
-  const auto add = [&](Place place, std::string text) {
-    errors.push_back({Severity::kError, place, std::move(text)});
-  };
-  if (statements.empty()) return add({1, 1}, "there is no command in it");
-  if (!std::holds_alternative<Begin>(statements.front().command)) {
-    add(statements.front().place, "the first line has to be Begin()");
-  }
-  for (std::size_t i = 1; i < statements.size(); ++i) {
-    if (!std::holds_alternative<Begin>(statements[i].command)) continue;
-    statements[i].command =
-        Flaw{Flaw::Effect::kHangs, "the commander hangs at a Begin() that is not its first line"};
-  }
-  const auto& last = statements.back();
-  if (!std::holds_alternative<End>(last.command) && !std::holds_alternative<Loop>(last.command)) {
-    add(last.place, "the last line has to be End() or Loop()");
-  }
-}
-
 }  // namespace
 
 ParseResult parse_commander(const Lines& lines) {
@@ -258,7 +226,13 @@ ParseResult parse_commander(const Lines& lines) {
     }
     program.statements.push_back(read_statement(line, program.remarks));
   }
-  if (errors.empty()) check_frame(program, errors);
+  const auto hangs = [](Statement& statement) {
+    statement.command =
+        Flaw{Flaw::Effect::kHangs, "the commander hangs at a Begin() that is not its first line"};
+  };
+  const Frame frame{
+      {1, 1}, "the first line has to be Begin()", "the last line has to be End() or Loop()", hangs};
+  if (errors.empty()) check_frame(program.statements, frame, errors);
   if (!errors.empty()) return tl::unexpected{std::move(errors)};
   return program;
 }

@@ -10,7 +10,6 @@
 namespace armjig::script {
 namespace {
 
-constexpr std::size_t kMostErrors = 20;
 /// Of angles and millimetres: far beyond any arm, and safe to compute with.
 constexpr double kLargestNumber = 1e6;
 constexpr std::string_view kComment = "//";
@@ -291,26 +290,6 @@ Read<Statement> read_statement(Cursor& cursor) {
                fmt::format("a line has one command; this is too much: {}", quoted(cursor.rest())));
 }
 
-/// What a program has to begin and to end with.
-void check_frame(const Program& program, int last_line, std::vector<Diagnostic>& errors) {
-  const auto& statements = program.statements;
-  const auto add = [&](Place place, std::string text) {
-    errors.push_back({Severity::kError, place, std::move(text)});
-  };
-  if (statements.empty()) return add({std::max(last_line, 1), 1}, "there is no command in it");
-  if (!std::holds_alternative<Begin>(statements.front().command)) {
-    add(statements.front().place, "the first command should be Begin()");
-  }
-  for (std::size_t i = 1; i < statements.size(); ++i) {
-    if (!std::holds_alternative<Begin>(statements[i].command)) continue;
-    add(statements[i].place, "Begin() stands once, in front of all others");
-  }
-  const auto& last = statements.back();
-  if (!std::holds_alternative<End>(last.command) && !std::holds_alternative<Loop>(last.command)) {
-    add(last.place, "the last command should be End() or Loop()");
-  }
-}
-
 }  // namespace
 
 ParseResult parse_documented(const Lines& lines) {
@@ -327,7 +306,15 @@ ParseResult parse_documented(const Lines& lines) {
     if (statement) program.statements.push_back(*std::move(statement));
     if (errors.size() == kMostErrors) break;
   }
-  if (errors.empty()) check_frame(program, lines.empty() ? 1 : lines.back().number, errors);
+  const auto refuse = [&](const Statement& statement) {
+    errors.push_back(
+        {Severity::kError, statement.place, "Begin() stands once, in front of all others"});
+  };
+  const Frame frame{{lines.empty() ? 1 : std::max(lines.back().number, 1), 1},
+                    "the first command should be Begin()",
+                    "the last command should be End() or Loop()",
+                    refuse};
+  if (errors.empty()) check_frame(program.statements, frame, errors);
   if (!errors.empty()) return tl::unexpected{std::move(errors)};
   return program;
 }

@@ -134,4 +134,22 @@ double value_of(std::string_view number) noexcept {
                                  : std::numeric_limits<double>::infinity();
 }
 
+void check_frame(std::vector<Statement>& statements, const Frame& frame,
+                 std::vector<Diagnostic>& errors) {
+  const auto add = [&](Place place, std::string_view text) {
+    errors.push_back({Severity::kError, place, std::string{text}});
+  };
+  if (statements.empty()) return add(frame.if_empty, "there is no command in it");
+  if (!std::holds_alternative<Begin>(statements.front().command)) {
+    add(statements.front().place, frame.first);
+  }
+  for (std::size_t i = 1; i < statements.size(); ++i) {
+    if (std::holds_alternative<Begin>(statements[i].command)) frame.late_begin(statements[i]);
+  }
+  const auto& last = statements.back();
+  if (!std::holds_alternative<End>(last.command) && !std::holds_alternative<Loop>(last.command)) {
+    add(last.place, frame.last);
+  }
+}
+
 }  // namespace armjig::script

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -83,6 +84,19 @@ struct Line {
 };
 using Lines = std::vector<Line>;
 [[nodiscard]] Lines split_lines(std::string_view text);
+
+/// What a dialect says of the commands that a program has to begin and to end with.
+struct Frame {
+  Place if_empty;  ///< where it says that there is no command
+  std::string_view first;
+  std::string_view last;
+  std::function<void(Statement&)>
+      late_begin;  ///< gets each `Begin()` that is not the first command
+};
+void check_frame(std::vector<Statement>& statements, const Frame& frame,
+                 std::vector<Diagnostic>& errors);
+
+inline constexpr std::size_t kMostErrors = 20;
 
 [[nodiscard]] ParseResult parse_documented(const Lines& lines);
 [[nodiscard]] ParseResult parse_commander(const Lines& lines);
