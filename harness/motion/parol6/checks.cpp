@@ -18,6 +18,14 @@ std::optional<Refusal> check_percent(double percent) noexcept {
   return Refusal{.reason = Refusal::Reason::kPercentOutOfRange, .value = percent, .limit = 100};
 }
 
+Refusal out_of_limits(std::size_t joint, double value, double limit) noexcept {
+  return {.reason = Refusal::Reason::kOutOfLimits, .joint = joint, .value = value, .limit = limit};
+}
+
+tl::unexpected<Refusal> impossible(double duration) noexcept {
+  return tl::unexpected{Refusal{.reason = Refusal::Reason::kImpossibleDuration, .value = duration}};
+}
+
 std::optional<Refusal> check_limits(const JointSteps& goal) noexcept {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto lower = kJointRanges[j].lower.value;
@@ -25,10 +33,7 @@ std::optional<Refusal> check_limits(const JointSteps& goal) noexcept {
     const bool is_below = goal[j].value < nearest_step(steps_of_degrees(j, lower));
     const bool is_above = goal[j].value > nearest_step(steps_of_degrees(j, upper));
     if (is_below || is_above) {
-      return Refusal{.reason = Refusal::Reason::kOutOfLimits,
-                     .joint = j,
-                     .value = degrees_of(j, goal[j]),
-                     .limit = is_below ? lower : upper};
+      return out_of_limits(j, degrees_of(j, goal[j]), is_below ? lower : upper);
     }
   }
   return std::nullopt;

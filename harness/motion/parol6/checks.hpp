@@ -29,6 +29,12 @@ namespace armjig::parol6::planning {
                                                           const arm::Pose& pose,
                                                           const arm::SixJoints& seed, double time);
 
+/// A joint beyond its range; in degrees.
+[[nodiscard]] Refusal out_of_limits(std::size_t joint, double value, double limit) noexcept;
+
+/// A move that cannot take that many seconds.
+[[nodiscard]] tl::unexpected<Refusal> impossible(double duration) noexcept;
+
 /// The fastest and the hardest moment of a joint: steps/s, steps/s^2, seconds since the begin.
 struct Peak {
   double speed{};

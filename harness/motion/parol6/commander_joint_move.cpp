@@ -13,10 +13,6 @@
 namespace armjig::parol6::planning {
 namespace {
 
-tl::unexpected<Refusal> impossible(double duration) {
-  return tl::unexpected{Refusal{.reason = Refusal::Reason::kImpossibleDuration, .value = duration}};
-}
-
 /// The limits themselves are refused: J5 cannot be sent to 90 degrees.
 std::optional<Refusal> check_open_range(const arm::SixJoints& target) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -24,10 +20,7 @@ std::optional<Refusal> check_open_range(const arm::SixJoints& target) {
     const bool is_below = target[j] <= to_radians(range.lower.value);
     const bool is_above = target[j] >= to_radians(range.upper.value);
     if (is_below || is_above) {
-      return Refusal{.reason = Refusal::Reason::kOutOfLimits,
-                     .joint = j,
-                     .value = to_degrees(target[j]),
-                     .limit = (is_below ? range.lower : range.upper).value};
+      return out_of_limits(j, to_degrees(target[j]), (is_below ? range.lower : range.upper).value);
     }
   }
   return std::nullopt;

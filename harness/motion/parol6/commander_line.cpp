@@ -72,10 +72,7 @@ tl::expected<Plan, Refusal> plan_commander_line(const LineTarget& target, const 
     }
   }
   const bool crashes = duration < 0 && timing.speed && timing.acceleration;
-  if (crashes || duration > kLongestMove) {
-    return tl::unexpected{
-        Refusal{.reason = Refusal::Reason::kImpossibleDuration, .value = duration}};
-  }
+  if (crashes || duration > kLongestMove) return impossible(duration);
   if (duration <= 0) duration = kDefaultLineDuration;
   const auto count = static_cast<std::size_t>(duration / kTick);
   const double last = (std::ceil(duration / kTick) - 1) * kTick;

@@ -100,10 +100,7 @@ tl::expected<Plan, Refusal> planned(const Way& way, const Share& share, Law law,
 /// In a time that was given, to the nearest frame.
 tl::expected<Plan, Refusal> planned_in_time(Way way, double duration, Law law, Tracking tracking,
                                             LimitCheck limits) {
-  if (!(duration >= kTick / 2 && duration <= kLongestMove)) {
-    return tl::unexpected{
-        Refusal{.reason = Refusal::Reason::kImpossibleDuration, .value = duration}};
-  }
+  if (!(duration >= kTick / 2 && duration <= kLongestMove)) return impossible(duration);
   way.ticks = static_cast<std::size_t>(std::llround(duration / kTick));
   if (law == Law::kPolynomial) {
     return planned(way, motion::Quintic{0, 1, way.duration()}, law, tracking, limits);

@@ -134,9 +134,7 @@ tl::expected<Plan, Refusal> plan_documented_line(const LineTarget& target, const
                                                  const Timing& timing, Tracking tracking,
                                                  const PlannerSettings& settings) {
   const double wanted = timing.duration.value_or(kDefaultLineDuration);
-  if (!(wanted >= kTick / 2 && wanted <= kLongestMove)) {
-    return tl::unexpected{Refusal{.reason = Refusal::Reason::kImpossibleDuration, .value = wanted}};
-  }
+  if (!(wanted >= kTick / 2 && wanted <= kLongestMove)) return impossible(wanted);
   const auto last = static_cast<std::size_t>(std::llround(wanted / kTick));
   const double duration = kTick * static_cast<double>(last);
   const auto law = timing.law.value_or(Law::kPolynomial);
