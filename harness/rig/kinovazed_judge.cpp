@@ -9,6 +9,7 @@
 
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/kinovazed/line_splitter.hpp"
+#include "harness/wire/steps.hpp"
 
 namespace armjig::kinovazed::rig {
 namespace {
@@ -64,14 +65,12 @@ class KinovaJudge final : public Judge {
   }
 
   void observe(Bytes bytes) override {
-    while (!bytes.empty()) {
-      const auto step = splitter_.step(bytes);
-      bytes = bytes.subspan(step.used);
-      if (step.found != LineSplitter::Found::kLine) continue;
+    for_each_step(splitter_, bytes, [this](const LineSplitter::Step& step) {
+      if (step.found != LineSplitter::Found::kLine) return;
       const auto message = decode_message(step.line);
-      if (!message) continue;
+      if (!message) return;
       if (const auto* const beat = std::get_if<Heartbeat>(&*message)) take(*beat);
-    }
+    });
   }
 
   [[nodiscard]] bool may_be_moving() const override { return written_.may_be_moving; }

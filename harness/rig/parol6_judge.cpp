@@ -11,6 +11,7 @@
 
 #include "harness/wire/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/splitter.hpp"
+#include "harness/wire/steps.hpp"
 
 namespace armjig::parol6::rig {
 namespace {
@@ -180,17 +181,15 @@ class BoardJudge final : public Judge {
   }
 
   void observe(Bytes bytes) override {
-    while (!bytes.empty()) {
-      const auto step = splitter_.step(bytes);
-      bytes = bytes.subspan(step.used);
-      const auto* frame = std::get_if<Splitter::Frame>(&step.found);
-      if (frame == nullptr) continue;
-      telemetry_ = decode_telemetry(body_of(frame->bytes.first<kTelemetryFrameSize>()));
+    for_each_step(splitter_, bytes, [this](const Splitter::Step& step) {
+      const auto telemetry = telemetry_of(step);
+      if (!telemetry) return;
+      telemetry_ = telemetry;
       unanswered_ = 0;
       if (may_be_moving() && !stop_reason_) stop_reason_ = reason_to_stop();
       shipped_.observe(*telemetry_);
       strict_.observe(*telemetry_);
-    }
+    });
   }
 
   std::optional<std::string> must_stop() override {

@@ -9,6 +9,7 @@
 
 #include "conformance/kinovazed/host/conduct.hpp"
 #include "conformance/kinovazed/host/lines.hpp"
+#include "harness/wire/steps.hpp"
 
 namespace armjig::kinovazed::programs {
 namespace {
@@ -94,12 +95,10 @@ class HostChecker final : public ProgramChecker {
   }
 
   void hear_server(Client& client, bool is_served, Bytes bytes) {
-    while (!bytes.empty()) {
-      const auto step = client.answers.step(bytes);
-      bytes = bytes.subspan(step.used);
-      if (step.found != LineSplitter::Found::kLine || !is_served) continue;
+    for_each_step(client.answers, bytes, [&](const LineSplitter::Step& step) {
+      if (step.found != LineSplitter::Found::kLine || !is_served) return;
       if (const auto message = decode_message(step.line)) conduct_.message(now_, *message);
-    }
+    });
   }
 
   void remove(Id id) {

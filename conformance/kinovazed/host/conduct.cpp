@@ -38,12 +38,6 @@ constexpr State leads_to(Verb verb) noexcept { return kLeadsTo[static_cast<std::
 bool is_deflection(const Command& command) noexcept {
   return command.verb == Verb::kMoveJoystick && command.deflection != Deflection{};
 }
-bool is_stick_at_rest(const Command& command) noexcept {
-  return command.verb == Verb::kMoveJoystick && command.deflection == Deflection{};
-}
-bool is_steering_mode(const Command& command) noexcept {
-  return command.verb == Verb::kSetJoystickMode && command.mode != Mode::kNoMode;
-}
 
 /// States that the flags of a heartbeat do not tell apart.
 bool is_shown_by_none(State state) noexcept { return shipped_machine().flag(state) == 0; }

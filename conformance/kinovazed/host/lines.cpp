@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "harness/wire/steps.hpp"
+
 namespace armjig::kinovazed::programs {
 namespace {
 
@@ -109,22 +111,20 @@ void judge_line(std::string_view line, const Complain& complain) {
 }  // namespace
 
 void Lines::feed(Bytes bytes, const OnCommand& on_command, const Complain& complain) {
-  while (!bytes.empty()) {
-    const auto step = splitter_.step(bytes);
-    bytes = bytes.subspan(step.used);
-    if (step.found == LineSplitter::Found::kNothing) continue;
+  for_each_step(splitter_, bytes, [&](const LineSplitter::Step& step) {
+    if (step.found == LineSplitter::Found::kNothing) return;
     const bool was_endless =
         std::exchange(is_endless_, step.found == LineSplitter::Found::kPieceOfLine);
     if (!was_endless && step.line.size() > kLongestLine) {
       complain("kinovazed.host.line-length",
                fmt::format("{} goes on for {} bytes or more", shown(step.line), step.line.size()));
     }
-    if (was_endless || is_endless_) continue;
+    if (was_endless || is_endless_) return;
     ++count_;
     const auto understood = decode_command(step.line, Profile::kFirmware);
     if (step.line.size() <= kLongestLine) judge_line(step.line, complain);
     if (understood) on_command(*understood);
-  }
+  });
 }
 
 void Lines::end(const Complain& complain) const {

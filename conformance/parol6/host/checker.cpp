@@ -9,6 +9,7 @@
 #include "conformance/parol6/host/framing.hpp"
 #include "conformance/parol6/host/pace.hpp"
 #include "harness/wire/parol6/splitter.hpp"
+#include "harness/wire/steps.hpp"
 
 namespace armjig::parol6::programs {
 namespace {
@@ -25,14 +26,9 @@ class HostChecker final : public ProgramChecker {
 
   void from_device(Instant time, Bytes bytes) override {
     now_ = time;
-    while (!bytes.empty()) {
-      const auto step = telemetry_.step(bytes);
-      bytes = bytes.subspan(step.used);
-      const auto* frame = std::get_if<Splitter::Frame>(&step.found);
-      if (frame == nullptr) continue;
-      conduct_.telemetry(time,
-                         decode_telemetry(body_of(frame->bytes.first<kTelemetryFrameSize>())));
-    }
+    for_each_step(telemetry_, bytes, [&](const Splitter::Step& step) {
+      if (const auto frame = telemetry_of(step)) conduct_.telemetry(time, *frame);
+    });
   }
 
   void finish(Instant time) override {

@@ -9,6 +9,7 @@
 #include "harness/console/message_view.hpp"
 #include "harness/wire/kinovazed/dissector.hpp"
 #include "harness/wire/kinovazed/line_splitter.hpp"
+#include "harness/wire/steps.hpp"
 
 namespace armjig::kinovazed::console {
 
@@ -36,11 +37,9 @@ class WatchedServer final : public WatchedStream {
  private:
   void receive(Instant now, Bytes bytes) override {
     messages_.feed(Direction::kFromDevice, now, bytes);
-    while (!bytes.empty()) {
-      const auto step = splitter_.step(bytes);
-      bytes = bytes.subspan(step.used);
+    for_each_step(splitter_, bytes, [this](const LineSplitter::Step& step) {
       if (step.found == LineSplitter::Found::kLine) take_line(step.line);
-    }
+    });
   }
 
   void take_line(std::string_view line) {

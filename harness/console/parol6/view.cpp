@@ -62,14 +62,6 @@ std::string gripper_text(const GripperReport& gripper) {
                      field_text(status, gripper.status));
 }
 
-/// `idle`, or `200` for a code without a name.
-std::string name_of(Command command) {
-  for (const auto& [value, name] : find_field(telemetry_fields(), "echo")->values) {
-    if (value == static_cast<std::int64_t>(command)) return std::string{name};
-  }
-  return std::to_string(static_cast<int>(command));
-}
-
 }  // namespace
 
 std::string panel(const TelemetryFrame& frame) {

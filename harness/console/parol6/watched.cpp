@@ -9,6 +9,7 @@
 #include "harness/drive/parol6/drive.hpp"
 #include "harness/drive/parol6/telemetry_json.hpp"
 #include "harness/wire/parol6/splitter.hpp"
+#include "harness/wire/steps.hpp"
 
 namespace armjig::parol6::console {
 
@@ -53,14 +54,9 @@ class WatchedBoard final : public WatchedStream {
     frames_.clear();
     drive_.receive(now, bytes);
     (void)drive_.take_events();
-    while (!bytes.empty()) {
-      const auto step = splitter_.step(bytes);
-      bytes = bytes.subspan(step.used);
-      const auto* found = std::get_if<Splitter::Frame>(&step.found);
-      if (found == nullptr) continue;
-      const auto whole = found->bytes.first<kTelemetryFrameSize>();
-      frames_.emplace_back(now, decode_telemetry(body_of(whole)));
-    }
+    for_each_step(splitter_, bytes, [&](const Splitter::Step& step) {
+      if (const auto frame = telemetry_of(step)) frames_.emplace_back(now, *frame);
+    });
   }
 
   Drive drive_;

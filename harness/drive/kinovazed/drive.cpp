@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "harness/wire/steps.hpp"
+
 namespace armjig::kinovazed::drive {
 namespace {
 
@@ -36,14 +38,6 @@ constexpr std::array<Row, kVerbNames.size()> kRows{{
 }};
 
 constexpr const Row& row_of(Verb verb) noexcept { return kRows[static_cast<std::size_t>(verb)]; }
-
-bool is_stick_at_rest(const Command& command) noexcept {
-  return command.verb == Verb::kMoveJoystick && command.deflection == Deflection{};
-}
-
-bool settles(const Command& command) noexcept {
-  return command.verb == Verb::kSetJoystickMode && command.mode != Mode::kNoMode;
-}
 
 std::string_view words_of(Ending ending) noexcept {
   static constexpr std::array<std::string_view, 6> kWords{
@@ -115,7 +109,7 @@ Result<RequestId> Drive::begin(Instant now, const Command& command) {
                        .reply_due = now + patience::kReply,
                        .event_due = now + patience::kReply + time_for(command.verb)});
   follow_stick(now, command);
-  if (settles(command)) mode_changed_ = now;
+  if (is_steering_mode(command)) mode_changed_ = now;
   if (!is_answered(command.verb)) end(now, requests_.end() - 1, Ending::kDone);
   return id;
 }
@@ -132,7 +126,8 @@ Result<std::optional<RequestId>> Drive::cancel(Instant now) {
 }
 
 Instant Drive::not_before(const Command& command) const noexcept {
-  return settles(command) && mode_changed_ ? *mode_changed_ + patience::kModeChange : Instant{};
+  return is_steering_mode(command) && mode_changed_ ? *mode_changed_ + patience::kModeChange
+                                                    : Instant{};
 }
 
 void Drive::withdraw(RequestId request) {
@@ -174,14 +169,12 @@ std::optional<Command> Drive::under_way() const noexcept {
 }
 
 void Drive::receive(Instant now, Bytes bytes) {
-  while (!bytes.empty()) {
-    const auto step = splitter_.step(bytes);
-    bytes = bytes.subspan(step.used);
+  for_each_step(splitter_, bytes, [&](const LineSplitter::Step& step) {
     if (step.found == LineSplitter::Found::kLine) take_line(now, step.line);
     if (step.found == LineSplitter::Found::kPieceOfLine) {
       add_event({.kind = DriveEvent::Kind::kUnreadable, .time = now});
     }
-  }
+  });
 }
 
 void Drive::take_line(Instant now, std::string_view line) {

@@ -34,13 +34,6 @@ std::optional<Ending> failed(std::string text) { return Ending{false, std::move(
 
 double seconds(Duration duration) { return std::chrono::duration<double>{duration}.count(); }
 
-std::string name_of(Command command) {
-  for (const auto& [value, name] : find_field(command_fields(), "command")->values) {
-    if (value == static_cast<std::int64_t>(command)) return std::string{name};
-  }
-  return std::to_string(static_cast<int>(command));
-}
-
 class CommandActivity final : public Activity {
  public:
   CommandActivity(Command command, std::string_view text) : command_{command}, text_{text} {}
@@ -100,56 +93,65 @@ std::string nothing_moved(std::size_t joint) {
                      joint + 1);
 }
 
-class Jog final : public Activity {
+class JointJog : public Activity {
+ protected:
+  explicit JointJog(std::size_t joint) noexcept : joint_{joint} {}
+
+  [[nodiscard]] std::size_t joint() const noexcept { return joint_; }
+  /// Where the joint is; the first time is the begin.
+  Steps follow(const Drive& drive, Instant now) {
+    const auto position = drive.telemetry()->position[joint_];
+    if (!start_) {
+      start_ = position;
+      began_ = now;
+    }
+    return position;
+  }
+  [[nodiscard]] Steps start() const noexcept { return *start_; }
+  [[nodiscard]] Instant began() const noexcept { return began_; }
+
+ private:
+  std::size_t joint_;
+  std::optional<Steps> start_;
+  Instant began_{};
+};
+
+class Jog final : public JointJog {
  public:
   Jog(std::size_t joint, StepsPerSecond speed)
-      : joint_{joint}, patience_{500ms + Duration{6s} / std::abs(speed.value)} {}
+      : JointJog{joint}, patience_{500ms + Duration{6s} / std::abs(speed.value)} {}
 
   [[nodiscard]] bool leaves_it_moving() const override { return true; }
 
  private:
   std::optional<Ending> advance(Drive& drive, Instant now) override {
-    const auto position = drive.telemetry()->position[joint_];
-    if (!start_) {
-      start_ = position;
-      began_ = now;
-    }
-    if (position != *start_) return done(fmt::format("j{} moves", joint_ + 1));
-    if (now - began_ < patience_) return std::nullopt;
+    const auto position = follow(drive, now);
+    if (position != start()) return done(fmt::format("j{} moves", joint() + 1));
+    if (now - began() < patience_) return std::nullopt;
     drive.idle();
-    return failed(nothing_moved(joint_));
+    return failed(nothing_moved(joint()));
   }
 
-  std::size_t joint_;
   Duration patience_;
-  std::optional<Steps> start_;
-  Instant began_{};
 };
 
-class JogFor final : public Activity {
+class JogFor final : public JointJog {
  public:
-  JogFor(std::size_t joint, Duration time) : joint_{joint}, time_{time} {}
+  JogFor(std::size_t joint, Duration time) : JointJog{joint}, time_{time} {}
 
  private:
   std::optional<Ending> advance(Drive& drive, Instant now) override {
-    const auto position = drive.telemetry()->position[joint_];
-    if (!start_) {
-      start_ = position;
-      began_ = now;
-    }
+    const auto position = follow(drive, now);
     // What is asked for now leaves with the next frame.
-    if (now + kPeriod - began_ < time_) return std::nullopt;
+    if (now + kPeriod - began() < time_) return std::nullopt;
     if (!std::exchange(is_stopped_, true)) drive.idle();
     if (stillness_.observe(now, position) < kToStand) return std::nullopt;
-    const auto way = position - *start_;
-    if (way.value == 0) return failed(nothing_moved(joint_));
-    return done(fmt::format("moved {:+} steps, {}", way.value, place_of(joint_, position)));
+    const auto way = position - start();
+    if (way.value == 0) return failed(nothing_moved(joint()));
+    return done(fmt::format("moved {:+} steps, {}", way.value, place_of(joint(), position)));
   }
 
-  std::size_t joint_;
   Duration time_;
-  std::optional<Steps> start_;
-  Instant began_{};
   bool is_stopped_ = false;
   Stillness<Steps> stillness_;
 };

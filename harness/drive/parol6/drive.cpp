@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "harness/wire/parol6/fields.hpp"
+#include "harness/wire/steps.hpp"
 
 namespace armjig::parol6::drive {
 namespace {
@@ -130,25 +131,24 @@ CommandBytes Drive::tick(Instant now) {
 }
 
 void Drive::receive(Instant now, Bytes bytes) {
-  while (!bytes.empty()) {
-    const auto step = splitter_.step(bytes);
-    bytes = bytes.subspan(step.used);
+  for_each_step(splitter_, bytes, [&](const Splitter::Step& step) {
     if (std::holds_alternative<Splitter::Fault>(step.found)) ++statistics_.bad;
-    const auto* found = std::get_if<Splitter::Frame>(&step.found);
-    if (found == nullptr) continue;
-    const auto frame = decode_telemetry(body_of(found->bytes.first<kTelemetryFrameSize>()));
-    match_answer(now);
-    if (std::exchange(is_silent_, false)) {
-      idle();  // the board may have been switched off, or somebody stands beside the arm
-      add_event(DriveEvent::Kind::kLinkBack, now, frame.echo);
-    }
-    check_estop(now, frame);
-    check_one_shot(now, frame);
-    check_homing(now, frame);
-    check_motion(now, frame);
-    telemetry_ = frame;
-    last_telemetry_ = now;
+    if (const auto frame = telemetry_of(step)) take(now, *frame);
+  });
+}
+
+void Drive::take(Instant now, const TelemetryFrame& frame) {
+  match_answer(now);
+  if (std::exchange(is_silent_, false)) {
+    idle();  // the board may have been switched off, or somebody stands beside the arm
+    add_event(DriveEvent::Kind::kLinkBack, now, frame.echo);
   }
+  check_estop(now, frame);
+  check_one_shot(now, frame);
+  check_homing(now, frame);
+  check_motion(now, frame);
+  telemetry_ = frame;
+  last_telemetry_ = now;
 }
 
 /// Telemetry does not say which frame it answers. The newest one that is waiting is the likeliest;

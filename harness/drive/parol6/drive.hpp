@@ -105,6 +105,7 @@ class Drive {
     std::optional<Instant> deadline{};  ///< none before its first frame left
   };
 
+  void take(Instant now, const TelemetryFrame& frame);
   void request(Command command) noexcept;
   void request_once(Command command) noexcept;
   [[nodiscard]] Command due_command(Instant now);

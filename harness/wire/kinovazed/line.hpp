@@ -34,6 +34,13 @@ struct Command {
   friend bool operator==(const Command&, const Command&) = default;
 };
 
+[[nodiscard]] constexpr bool is_stick_at_rest(const Command& command) noexcept {
+  return command.verb == Verb::kMoveJoystick && command.deflection == Deflection{};
+}
+[[nodiscard]] constexpr bool is_steering_mode(const Command& command) noexcept {
+  return command.verb == Verb::kSetJoystickMode && command.mode != Mode::kNoMode;
+}
+
 /// What `Heartbeat:n` says; every value of the byte can be said.
 struct Heartbeat {
   std::uint8_t flags{};  ///< `beat::`

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/wire/parol6/fields.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <string_view>
-
-#include "harness/wire/parol6/frame.hpp"
 
 namespace armjig::parol6 {
 namespace {
@@ -101,5 +101,11 @@ constexpr std::array kTelemetryFields{
 
 std::span<const Field> command_fields() noexcept { return kCommandFields; }
 std::span<const Field> telemetry_fields() noexcept { return kTelemetryFields; }
+
+std::string name_of(Command command) {
+  const auto code = static_cast<std::int64_t>(command);
+  const auto* const found = std::ranges::find(kCommands, code, &NamedValue::value);
+  return found == std::end(kCommands) ? std::to_string(code) : std::string{found->name};
+}
 
 }  // namespace armjig::parol6

@@ -23,6 +23,11 @@ std::size_t find_start(Bytes in) noexcept {
   return in.size();
 }
 
+bool is_one_more_start_byte(const Splitter::Fault& fault) noexcept {
+  return fault.kind == Splitter::FaultKind::kWrongLength &&
+         fault.value == std::to_integer<std::uint8_t>(kStartByte);
+}
+
 }  // namespace
 
 std::byte Splitter::length_byte() const noexcept {
@@ -77,9 +82,7 @@ Splitter::Step Splitter::step_direct(Bytes in) noexcept {
     const auto candidate = in.subspan(place, std::min(frame_size_, in.size() - place));
     auto found = judge(candidate);
     if (const auto* fault = std::get_if<Fault>(&found)) {
-      const bool one_more_start_byte = fault->value == std::to_integer<std::uint8_t>(kStartByte) &&
-                                       fault->kind == FaultKind::kWrongLength;
-      if (one_more_start_byte) {
+      if (is_one_more_start_byte(*fault)) {
         ++place;
         continue;
       }
@@ -109,10 +112,9 @@ Splitter::Step Splitter::step_held(Bytes in) noexcept {
     }
     auto found = judge(candidate);
     if (const auto* fault = std::get_if<Fault>(&found)) {
-      const bool one_more_start_byte = fault->value == std::to_integer<std::uint8_t>(kStartByte) &&
-                                       fault->kind == FaultKind::kWrongLength;
-      hold(candidate.subspan(one_more_start_byte ? 1 : next_candidate(candidate)));
-      if (one_more_start_byte) continue;
+      const bool is_longer_run = is_one_more_start_byte(*fault);
+      hold(candidate.subspan(is_longer_run ? 1 : next_candidate(candidate)));
+      if (is_longer_run) continue;
       return {used, found};
     }
     if (std::holds_alternative<Frame>(found)) {

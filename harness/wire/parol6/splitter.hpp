@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "harness/core/bytes.hpp"
@@ -68,5 +69,13 @@ class Splitter {
   std::size_t held_ = 0;
   std::array<std::byte, kTelemetryFrameSize> buffer_{};
 };
+
+/// What a splitter of telemetry found, if it is a frame.
+[[nodiscard]] inline std::optional<TelemetryFrame> telemetry_of(
+    const Splitter::Step& step) noexcept {
+  const auto* const found = std::get_if<Splitter::Frame>(&step.found);
+  if (found == nullptr) return std::nullopt;
+  return decode_telemetry(body_of(found->bytes.first<kTelemetryFrameSize>()));
+}
 
 }  // namespace armjig::parol6
