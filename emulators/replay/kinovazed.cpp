@@ -8,13 +8,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "emulators/kinovazed/server.hpp"
 #include "emulators/replay/kinovazed_rules.hpp"
+#include "emulators/replay/wrong_key.hpp"
 
 namespace armjig::kinovazed::replay {
 namespace {
@@ -44,8 +44,8 @@ auto wrong(const Trace& trace, std::size_t line, std::string_view what) {
   return problem(ErrorCode::kMalformed, fmt::format("{}:{}", trace.path, line), std::string{what});
 }
 
-/// Reads the `arm` of a header; remembers the first key that is wrong.
-class ArmReader {
+/// Reads the `arm` of a header.
+class ArmReader : public WrongKey {
  public:
   explicit ArmReader(const Json& json) : json_{json} {}
 
@@ -53,13 +53,11 @@ class ArmReader {
     const auto found = json_.find(key);
     if (found == json_.end()) return;
     if (found->is_number()) value = found->get<double>();
-    if (!found->is_number() || !(value >= least && value <= most)) wrong_key_ = key;
+    if (!found->is_number() || !(value >= least && value <= most)) complain(key);
   }
-  [[nodiscard]] const std::string& wrong_key() const noexcept { return wrong_key_; }
 
  private:
   const Json& json_;
-  std::string wrong_key_;
 };
 
 Outcome<Recording> read_header(const Trace& trace) {

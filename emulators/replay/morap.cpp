@@ -13,6 +13,7 @@
 #include "emulators/i2c/bus.hpp"
 #include "emulators/morap/node.hpp"
 #include "emulators/morap/pen.hpp"
+#include "emulators/replay/wrong_key.hpp"
 #include "harness/core/hex.hpp"
 
 namespace armjig::morap::replay {
@@ -21,8 +22,7 @@ namespace {
 using namespace emulation;
 using Json = nlohmann::json;
 
-/// Reads the keys of a JSON object; remembers the first that is wrong.
-class Reader {
+class Reader : public WrongKey {
  public:
   double number(const Json& object, const char* key) {
     const auto found = object.find(key);
@@ -57,14 +57,6 @@ class Reader {
     complain(key);
     return {};
   }
-
-  void complain(std::string_view key) {
-    if (wrong_key_.empty()) wrong_key_ = key;
-  }
-  [[nodiscard]] const std::string& wrong_key() const noexcept { return wrong_key_; }
-
- private:
-  std::string wrong_key_;
 };
 
 PlantParameters read_plant(Reader& reader, const Json& json) {
@@ -145,9 +137,8 @@ Outcome<Bench> make_bench(const Trace& trace) {
       }
     }
   }
-  if (reader.wrong_key().empty()) return bench;
-  return problem(ErrorCode::kMalformed, trace.path + ":1",
-                 fmt::format("\"{}\" is missing or out of range", reader.wrong_key()));
+  if (!reader.wrong_key().empty()) return reader.refuse(trace);
+  return bench;
 }
 
 char letter(const BusReply& reply) noexcept {
@@ -187,8 +178,7 @@ class Operation {
     if (letter(address) == 'A') end = is_read ? read(end, actual) : write(end, actual);
     if (json_.value("stop", Json(true)) != false) bench_.bus().stop(end);
     if (is_read) mask(recorded, actual);
-    replayed.recorded.push_back(std::move(recorded));
-    replayed.actual.push_back(std::move(actual));
+    replayed.add(std::move(recorded), std::move(actual));
   }
 
   Instant write(Instant time, TraceEvent& actual) {
@@ -234,8 +224,7 @@ class Operation {
         in_words(reader_.integer(json_, "servo_deg", -360, 360), reader_.flag(json_, "led1"),
                  reader_.flag(json_, "led2"), reader_.text(json_, "serial"));
     actual.text = in_words(pen->servo_degrees(), pen->lamp1(), pen->lamp2(), pen->take_console());
-    replayed.recorded.push_back(std::move(recorded));
-    replayed.actual.push_back(std::move(actual));
+    replayed.add(std::move(recorded), std::move(actual));
   }
 
   void stimulate() {

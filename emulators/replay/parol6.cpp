@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "emulators/parol6/board.hpp"
+#include "emulators/replay/wrong_key.hpp"
 
 namespace armjig::parol6::replay {
 namespace {
@@ -24,8 +25,7 @@ struct Recording {
   bool has_can = false;
 };
 
-/// Reads the keys of a header; remembers the first that is wrong.
-class HeaderReader {
+class HeaderReader : public WrongKey {
  public:
   template <class Integer>
   Integer integer(const Json& object, const char* key, Integer least, Integer most) {
@@ -45,14 +45,6 @@ class HeaderReader {
   Level level(const Json& object, const char* key) {
     return integer<int>(object, key, 0, 1) == 1 ? Level::kHigh : Level::kLow;
   }
-
-  void complain(std::string_view key) {
-    if (wrong_key_.empty()) wrong_key_ = key;
-  }
-  [[nodiscard]] const std::string& wrong_key() const noexcept { return wrong_key_; }
-
- private:
-  std::string wrong_key_;
 };
 
 void read_joint(HeaderReader& reader, const Json& json, Plant& plant) {
@@ -112,10 +104,7 @@ Outcome<Recording> read_header(const Trace& trace) {
   const auto can = header.value("can_recorded", Json(false));
   if (!can.is_boolean()) reader.complain("can_recorded");
   recording.has_can = can == true;
-  if (!reader.wrong_key().empty()) {
-    return problem(ErrorCode::kMalformed, trace.path + ":1",
-                   fmt::format("\"{}\" is missing or out of range", reader.wrong_key()));
-  }
+  if (!reader.wrong_key().empty()) return reader.refuse(trace);
   return recording;
 }
 

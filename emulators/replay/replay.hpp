@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "harness/capture/trace.hpp"
@@ -16,6 +17,11 @@ namespace armjig {
 struct Replayed {
   std::vector<TraceEvent> recorded;  ///< the lines that the emulator must reproduce
   std::vector<TraceEvent> actual;    ///< what it sent
+
+  void add(TraceEvent what_was, TraceEvent what_is) {
+    recorded.push_back(std::move(what_was));
+    actual.push_back(std::move(what_is));
+  }
 };
 
 /// Where the two first disagree, by the rules that recordings of the device have.
