@@ -64,17 +64,23 @@ Exit conclude(const ProgramResult& result, const Options& options, const Rig<Bus
   }
 }
 
-/// Nobody programs a motor that turns.
 template <class Work>
-Exit with_disabled_joint(const Device& device, const Options& options, Work work) {
+Exit with_joint(const Device& device, const Options& options, Work work) {
   auto rig = open_bus_rig(device, options.target);
   if (!rig) return report(rig.error());
   Master master{rig->port()};
   Joint joint{master, address_of(options)};
-  if (const auto code = joint.disable(); code != BusCode::kOk) {
-    return report(code, joint.address(), *rig);
-  }
-  return conclude(work(joint), options, *rig);
+  return work(joint, *rig);
+}
+
+/// Nobody programs a motor that turns.
+template <class Work>
+Exit with_disabled_joint(const Device& device, const Options& options, Work work) {
+  return with_joint(device, options, [&](Joint& joint, const Rig<BusPort>& rig) {
+    const auto code = joint.disable();
+    if (code != BusCode::kOk) return report(code, joint.address(), rig);
+    return conclude(work(joint), options, rig);
+  });
 }
 
 Exit tune_node(const Device& device, const Options& options) {
@@ -122,16 +128,26 @@ Exit read_parameters_of(Joint& joint, ControllerKind kind, const Rig<BusPort>& r
 }
 
 Exit read_params(const Device& device, const Options& options) {
-  auto rig = open_bus_rig(device, options.target);
-  if (!rig) return report(rig.error());
-  Master master{rig->port()};
-  Joint joint{master, address_of(options)};
-  if (options.controller != "speed") {
-    const auto done = read_parameters_of(joint, ControllerKind::kPosition, *rig);
-    if (done != Exit::kPassed || options.controller == "position") return done;
-    fmt::print("\n");
-  }
-  return read_parameters_of(joint, ControllerKind::kSpeed, *rig);
+  return with_joint(device, options, [&](Joint& joint, const Rig<BusPort>& rig) {
+    if (options.controller != "speed") {
+      const auto done = read_parameters_of(joint, ControllerKind::kPosition, rig);
+      if (done != Exit::kPassed || options.controller == "position") return done;
+      fmt::print("\n");
+    }
+    return read_parameters_of(joint, ControllerKind::kSpeed, rig);
+  });
+}
+
+using Run = Exit (*)(const Device& device, const Options& options);
+
+/// What all that is done to a node have, last of their options.
+void add_to_node(CLI::App& command, const std::shared_ptr<Options>& options, const Device& device,
+                 Action& action, Run run) {
+  add_target_options(command, options->target);
+  add_node_option(command, options->node);
+  command.callback([options, run, &device, &action] {
+    action = [options, run, &device] { return run(device, *options); };
+  });
 }
 
 void add_tune(CLI::App& morap, const Device& device, Action& action) {
@@ -141,11 +157,7 @@ void add_tune(CLI::App& morap, const Device& device, Action& action) {
   const auto added = add_tune_options(*command, options->tuning);
   for (auto* option : {added.type, added.inertia, added.pole}) option->required();
   add_motor_option(*command, options->motor);
-  add_target_options(*command, options->target);
-  add_node_option(*command, options->node);
-  command->callback([options, &device, &action] {
-    action = [options, &device] { return tune(device, *options); };
-  });
+  add_to_node(*command, options, device, action, tune);
 }
 
 void add_program(CLI::App& morap, const Device& device, Action& action) {
@@ -154,11 +166,7 @@ void add_program(CLI::App& morap, const Device& device, Action& action) {
   command->add_option("FILE", options->file, "as 'morap tune' and 'morap read-params' write it")
       ->required()
       ->type_name("");
-  add_target_options(*command, options->target);
-  add_node_option(*command, options->node);
-  command->callback([options, &device, &action] {
-    action = [options, &device] { return program(device, *options); };
-  });
+  add_to_node(*command, options, device, action, program);
 }
 
 void add_read_params(CLI::App& morap, const Device& device, Action& action) {
@@ -167,11 +175,7 @@ void add_read_params(CLI::App& morap, const Device& device, Action& action) {
   command->add_option("--controller", options->controller, "which of them")
       ->check(one_of({"position", "speed", "both"}))
       ->capture_default_str();
-  add_target_options(*command, options->target);
-  add_node_option(*command, options->node);
-  command->callback([options, &device, &action] {
-    action = [options, &device] { return read_params(device, *options); };
-  });
+  add_to_node(*command, options, device, action, read_params);
 }
 
 }  // namespace

@@ -19,6 +19,9 @@
 namespace armjig::cli {
 namespace {
 
+using morap::drive::BusCode;
+using morap::drive::Master;
+
 constexpr auto kHelp =
     "Single transactions on an I2C bus, and what they mean to MORAP nodes and the pen.\n"
     "\n"
@@ -85,8 +88,8 @@ Outcome<std::vector<std::byte>> parse_bytes(const std::vector<std::string>& word
 Exit scan(const Device& device, const Options& options) {
   auto rig = open_bus_rig(device, options.target);
   if (!rig) return report(rig.error());
-  const auto found = morap::drive::Master{rig->port()}.scan();
-  if (found.code != morap::drive::BusCode::kOk) return report(found.code, {}, *rig);
+  const auto found = Master{rig->port()}.scan();
+  if (found.code != BusCode::kOk) return report(found.code, {}, *rig);
   for (const auto address : found.addresses) {
     if (options.wants_json) {
       fmt::print("{{\"address\":{},\"guess\":\"{}\"}}\n", address.value, guess(address));
@@ -99,37 +102,45 @@ Exit scan(const Device& device, const Options& options) {
   return Exit::kNothing;
 }
 
-Exit write(const Device& device, const Options& options) {
-  const auto bytes = parse_bytes(options.hex);
+/// Opens the bus and does `work(master, address, bytes)`, which answers how its last transaction
+/// ended.
+template <class Work>
+Exit with_bytes(const Device& device, const Options& options, const std::vector<std::string>& words,
+                Work work) {
+  const auto bytes = parse_bytes(words);
   if (!bytes) return report(bytes.error());
   auto rig = open_bus_rig(device, options.target);
   if (!rig) return report(rig.error());
   const BusAddress address{static_cast<std::uint8_t>(options.address)};
-  morap::drive::Master master{rig->port()};
-  const auto code = master.transmit(address, *bytes);
-  if (code != morap::drive::BusCode::kOk) return report(code, address, *rig);
-  Transcript{options.wants_json}.add(master.now(), address, Access::kWrite, *bytes);
-  return Exit::kPassed;
+  Master master{rig->port()};
+  const auto code = work(master, address, *bytes);
+  return code == BusCode::kOk ? Exit::kPassed : report(code, address, *rig);
+}
+
+Exit write(const Device& device, const Options& options) {
+  const auto transmit = [&](Master& master, BusAddress address, Bytes bytes) {
+    const auto code = master.transmit(address, bytes);
+    if (code != BusCode::kOk) return code;
+    Transcript{options.wants_json}.add(master.now(), address, Access::kWrite, bytes);
+    return code;
+  };
+  return with_bytes(device, options, options.hex, transmit);
 }
 
 Exit read(const Device& device, const Options& options) {
-  const auto choice = parse_bytes(options.select);
-  if (!choice) return report(choice.error());
-  auto rig = open_bus_rig(device, options.target);
-  if (!rig) return report(rig.error());
-  const BusAddress address{static_cast<std::uint8_t>(options.address)};
-  morap::drive::Master master{rig->port()};
-  Transcript transcript{options.wants_json};
-  if (!choice->empty()) {
-    const auto code = master.transmit(address, *choice);
-    if (code != morap::drive::BusCode::kOk) return report(code, address, *rig);
-    transcript.add(master.now(), address, Access::kWrite, *choice);
-  }
-  std::vector<std::byte> bytes(options.count);
-  const auto code = master.receive(address, bytes);
-  if (code != morap::drive::BusCode::kOk) return report(code, address, *rig);
-  transcript.add(master.now(), address, Access::kRead, bytes);
-  return Exit::kPassed;
+  const auto receive = [&](Master& master, BusAddress address, Bytes choice) {
+    Transcript transcript{options.wants_json};
+    if (!choice.empty()) {
+      const auto code = master.transmit(address, choice);
+      if (code != BusCode::kOk) return code;
+      transcript.add(master.now(), address, Access::kWrite, choice);
+    }
+    std::vector<std::byte> bytes(options.count);
+    const auto code = master.receive(address, bytes);
+    if (code == BusCode::kOk) transcript.add(master.now(), address, Access::kRead, bytes);
+    return code;
+  };
+  return with_bytes(device, options, options.select, receive);
 }
 
 using Run = Exit (*)(const Device& device, const Options& options);

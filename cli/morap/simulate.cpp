@@ -17,6 +17,7 @@
 #include "emulators/morap/step_response.hpp"
 #include "harness/drive/morap/parameter_file.hpp"
 #include "harness/report/report.hpp"
+#include "harness/report/wording.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -93,13 +94,11 @@ Outcome<std::vector<PlotPoint>> read_recording(const std::string& path) {
   return problem(ErrorCode::kMalformed, path, "there is no line 'seconds,value' in it");
 }
 
-double seconds(Duration duration) { return std::chrono::duration<double>{duration}.count(); }
-
 Outcome<void> write_csv(const StepResponse& response, const std::string& path) {
   std::string text = "seconds,value,volts,amperes\n";
   for (const auto& sample : response.samples) {
-    text += fmt::format("{:.6f},{:.9g},{:.6f},{:.6f}\n", seconds(sample.time), sample.value,
-                        sample.volts, sample.amperes);
+    text += fmt::format("{:.6f},{:.9g},{:.6f},{:.6f}\n", wording::seconds(sample.time),
+                        sample.value, sample.volts, sample.amperes);
   }
   return write_file(path, text);
 }
@@ -107,7 +106,7 @@ Outcome<void> write_csv(const StepResponse& response, const std::string& path) {
 Series series_of(const StepResponse& response, std::string name, double StepSample::* what) {
   Series series{std::move(name), {}, Shape::kLine};
   for (const auto& sample : response.samples) {
-    series.points.push_back({seconds(sample.time), sample.*what});
+    series.points.push_back({wording::seconds(sample.time), sample.*what});
   }
   return series;
 }
@@ -140,7 +139,7 @@ std::string controller_of(const Options& options) {
 
 Report report_of(const StepResponse& response, const Options& options,
                  std::vector<PlotPoint> recording) {
-  const bool has_settled = seconds(response.settling) < options.seconds;
+  const bool has_settled = wording::seconds(response.settling) < options.seconds;
   Report report;
   report.title = "MORAP step response";
   report.facts = {{"controller", controller_of(options)},
@@ -150,11 +149,12 @@ Report report_of(const StepResponse& response, const Options& options,
                   {"dry friction", fmt::format("{} N m", options.dry)},
                   {"viscous friction", fmt::format("{} N m s", options.viscous)},
                   {"load", fmt::format("{} N m", options.load)}};
-  Table figures{{"overshoot", "settled (2 %)", "final value", "peak voltage"},
-                {{fmt::format("{:.2f} %", response.overshoot * 100),
-                  has_settled ? fmt::format("{:.3f} s", seconds(response.settling)) : "never",
-                  fmt::format("{:.6f}", response.final_value),
-                  fmt::format("{:.3f} V", response.peak_volts)}}};
+  Table figures{
+      {"overshoot", "settled (2 %)", "final value", "peak voltage"},
+      {{fmt::format("{:.2f} %", response.overshoot * 100),
+        has_settled ? fmt::format("{:.3f} s", wording::seconds(response.settling)) : "never",
+        fmt::format("{:.6f}", response.final_value),
+        fmt::format("{:.3f} V", response.peak_volts)}}};
   report.sections = {
       {"Figures", {}, std::move(figures), {}},
       {"Plots", {}, {}, plots_of(response, options, std::move(recording))},
