@@ -158,15 +158,11 @@ class Run {
     const auto obstacle = out_of_reach_.find(start);
     if (obstacle == out_of_reach_.end() || obstacle->second.verdict != Verdict::kFail) return;
     if (!blamed_.insert(start).second) return;
-    ReportRow row;
-    row.verdict = Verdict::kFail;
-    row.name = fmt::format("{}.start", suite_.device);
+    auto row = row_of_device("start", Verdict::kFail);
     row.summary =
         fmt::format("the device can be brought to the start {}", suite_.starts[start].name);
     row.expected = obstacle->second.expected;
     row.actual = obstacle->second.actual;
-    row.evidence = bench_.last_exchange();
-    row.repeat = options_.command;
     add(std::move(row));
     has_failed_ = true;
   }
@@ -218,16 +214,22 @@ class Run {
   bool check_alive(std::string_view when) {
     bench_.begin(options_.profile, options_.seed);
     if (bench_.is_alive()) return true;
-    ReportRow row;
-    row.verdict = Verdict::kError;
-    row.name = fmt::format("{}.alive", suite_.device);
+    auto row = row_of_device("alive", Verdict::kError);
     row.summary = fmt::format("no sign of life {}", when);
     row.expected = "an answer to a good message";
     row.actual = bench_.error() ? std::string{describe(bench_.error()->code)} : "silence";
-    row.evidence = bench_.last_exchange();
-    row.repeat = options_.command;
     add(std::move(row));
     return false;
+  }
+
+  /// What is wrong with the device belongs to no case.
+  [[nodiscard]] ReportRow row_of_device(std::string_view what, Verdict verdict) const {
+    ReportRow row;
+    row.verdict = verdict;
+    row.name = fmt::format("{}.{}", suite_.device, what);
+    row.evidence = bench_.last_exchange();
+    row.repeat = options_.command;
+    return row;
   }
 
   [[nodiscard]] ReportRow row_of(const Case& one, Finding finding) const {

@@ -35,6 +35,30 @@ void switch_off(ServerBench& server) {
   server.accept("QuitEStop");
 }
 
+void initialize_afresh(ServerBench& server) {
+  switch_off(server);
+  server.perform("Initialize", Event::kInitialized);
+}
+
+void initialize_at_home(ServerBench& server) {
+  server.perform("RunObjective:Home", Event::kObjectiveDone);
+  server.wait_until_before_beat(kBeforeBeat);
+  server.accept("Initialize");
+  server.expect_beat(5);
+}
+
+void half_close(ServerBench& server) {
+  server.say("EStop");
+  server.finish_sending();
+  server.expect(Event::kAccepted);
+  server.expect_end();
+}
+
+void expect_hung(ServerBench& server) {
+  server.expect_no_message(std::chrono::milliseconds{2500});
+  server.expect_true(!server.answers(), "no answer ever again", "an answer");
+}
+
 void enter(ServerBench& server, State state) {
   switch (state) {
     case State::kInitializing:

@@ -47,6 +47,16 @@ void enter(ServerBench& server, emulation::State state);
 
 /// From retracted to poweredOff; the arm stays folded, so that initializing takes its time.
 void switch_off(ServerBench& server);
+/// The same, and initializes.
+void initialize_afresh(ServerBench& server);
+
+/// Initializes again an arm that is there already, which a beat has to show.
+void initialize_at_home(ServerBench& server);
+
+/// Says a command and ends its sending: the answer comes, and the end.
+void half_close(ServerBench& server);
+
+void expect_hung(ServerBench& server);
 
 /// A case that begins where its state can be entered; with motion it is not quick.
 [[nodiscard]] constexpr Case in(emulation::State state, std::string_view requirement,

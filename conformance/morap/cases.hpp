@@ -30,4 +30,16 @@ inline void expect_outcome(NodeBench& node, std::string_view message, Programmin
   node.expect_programming(wanted);
 }
 
+/// Of a controller that would never run.
+inline void expect_of_zero_rate(NodeBench& node, ProgrammingStatus wanted) {
+  node.needs_emulation();
+  node.send(proportional(0, 1.0F));
+  node.expect_programming(wanted);
+}
+
+constexpr Case programming(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
+                           Start start = kProgrammable) {
+  return from(start, Hazard::kProgram, requirement, rule, run);
+}
+
 }  // namespace armjig::morap::conformance

@@ -65,13 +65,6 @@ void during_commands(ServerBench& server) {
   expect_time(server, last.time - first.time, 2900ms, 3300ms + server.noise());
 }
 
-void initializing_again(ServerBench& server) {
-  server.perform("RunObjective:Home", Event::kObjectiveDone);
-  server.wait_until_before_beat(kBeforeBeat);
-  server.accept("Initialize");
-  server.expect_beat(5);
-}
-
 void initialized(ServerBench& server) {
   server.expect_beat(21);
   server.accept("EStop");
@@ -119,7 +112,7 @@ constexpr Case kCases[] = {
     in(kEmergencyStopped, "kinovazed.beat.stopped", "Beat 3.", on<value<kEmergencyStopped>>),
     in(kPoweredOff, "kinovazed.beat.off", "Beat 1.", on<value<kPoweredOff>>),
     in(kInitializing, "kinovazed.beat.initializing", "Beat 1.", on<value<kInitializing>>),
-    in(kIdle, "kinovazed.beat.initializing-again", "Beat 5.", on<initializing_again>),
+    in(kIdle, "kinovazed.beat.initializing-again", "Beat 5.", on<initialize_at_home>),
     in(kIdle, "kinovazed.beat.idle", "Beat 21.", on<value<kIdle>>),
     in(kRetracting, "kinovazed.beat.retracting", "Beat 5.", on<value<kRetracting>>),
     in(kRetracted, "kinovazed.beat.retracted", "Beat 133.", on<value<kRetracted>>),

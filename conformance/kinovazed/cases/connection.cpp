@@ -96,13 +96,6 @@ void reset(ServerBench& server) {
   }
 }
 
-void half_close(ServerBench& server) {
-  server.say("EStop");
-  server.finish_sending();
-  server.expect(Event::kAccepted);
-  server.expect_end();
-}
-
 void half_close_unfinished(ServerBench& server) {
   server.send("QuitEStop");
   server.finish_sending();

@@ -13,11 +13,6 @@ void expect_lives(ServerBench& server) {
   server.expect_true(server.answers(), "an answer to EStop", "silence");
 }
 
-void expect_hung(ServerBench& server) {
-  server.expect_no_message(2500ms);
-  server.expect_true(!server.answers(), "no answer ever again", "an answer");
-}
-
 // What kills a shipped server.
 
 void unplug(ServerBench& server) {

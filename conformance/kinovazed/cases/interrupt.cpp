@@ -23,8 +23,7 @@ void table(ServerBench& server) {
   server.perform("Unfold", Event::kUnfolded);
   server.expect_beat(21);
   server.perform("Retract", Event::kRetracted);
-  switch_off(server);
-  server.perform("Initialize", Event::kInitialized);
+  initialize_afresh(server);
   server.expect_beat(21);
 }
 
@@ -54,8 +53,7 @@ void objective(ServerBench& server) {
 
 void late_mode(ServerBench& server) {
   server.accept("SetJoystickMode:XYZ");
-  switch_off(server);
-  server.perform("Initialize", Event::kInitialized);
+  initialize_afresh(server);
   server.expect_quiet(1s);
   server.expect_beat(21);
 }
@@ -63,8 +61,7 @@ void late_mode(ServerBench& server) {
 void half_way(ServerBench& server) {
   server.accept("Retract");
   server.pause(800ms);
-  switch_off(server);
-  server.perform("Initialize", Event::kInitialized);
+  initialize_afresh(server);
   server.expect_beat(21);
 }
 
@@ -95,10 +92,7 @@ void goes_on(ServerBench& server) {
 }
 
 void initialize_again(ServerBench& server) {
-  server.perform("RunObjective:Home", Event::kObjectiveDone);
-  server.wait_until_before_beat(kBeforeBeat);
-  server.accept("Initialize");
-  server.expect_beat(5);
+  initialize_at_home(server);
   server.expect(Event::kInitialized, ServerBench::kMotionTime);
   server.expect_beat(21);
 }

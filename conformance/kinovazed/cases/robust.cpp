@@ -12,13 +12,17 @@ std::string repeated(std::string_view text, int times) {
   return all;
 }
 
+void expect_answers(ServerBench& server) {
+  server.expect(Event::kAccepted);
+  server.expect(Event::kRejected);
+}
+
 void flood(ServerBench& server) {
   constexpr int kPairs = 100;
   server.send(repeated("EStop\r\nUnfold\r\n", kPairs));
   for (int i = 0; i < kPairs; ++i) {
     server.about("pair " + std::to_string(i + 1));
-    server.expect(Event::kAccepted);
-    server.expect(Event::kRejected);
+    expect_answers(server);
   }
   server.expect_silence();
 }
@@ -29,10 +33,7 @@ void slow_reader(ServerBench& server) {
   server.as(1);
   server.pause(3s);
   server.as(0);
-  for (int i = 0; i < kCommands; ++i) {
-    server.expect(Event::kAccepted);
-    server.expect(Event::kRejected);
-  }
+  for (int i = 0; i < kCommands; ++i) expect_answers(server);
 }
 
 /// A line of any bytes but LF that cannot be a command.
@@ -86,10 +87,7 @@ void resets(ServerBench& server) {
 
 void half_closes(ServerBench& server) {
   for (int i = 0; i < 10; ++i) {
-    server.say("EStop");
-    server.finish_sending();
-    server.expect(Event::kAccepted);
-    server.expect_end();
+    half_close(server);
     server.connect();
   }
 }
@@ -102,10 +100,7 @@ void split_flood(ServerBench& server) {
     server.pause(5ms);
     at += size;
   }
-  for (int i = 0; i < 30; ++i) {
-    server.expect(Event::kAccepted);
-    server.expect(Event::kRejected);
-  }
+  for (int i = 0; i < 30; ++i) expect_answers(server);
   server.expect_silence();
 }
 

@@ -20,21 +20,6 @@ void refuse_all(ServerBench& server, std::span<const std::string_view> commands)
   for (const auto command : commands) server.refuse(command);
 }
 
-constexpr std::array kAllButStops{"Initialize"sv,
-                                  "Unfold"sv,
-                                  "Retract"sv,
-                                  "Freeze"sv,
-                                  "Unfreeze"sv,
-                                  "SetJoystickMode:Rotation"sv,
-                                  "MoveJoystick:0:0:0"sv,
-                                  "RunObjective:Home"sv};
-constexpr std::array kAllButInitialize{"Unfold"sv,
-                                       "Retract"sv,
-                                       "Freeze"sv,
-                                       "Unfreeze"sv,
-                                       "SetJoystickMode:Rotation"sv,
-                                       "MoveJoystick:0:0:0"sv,
-                                       "RunObjective:Home"sv};
 constexpr std::array kAllButEStop{"QuitEStop"sv,
                                   "Initialize"sv,
                                   "Unfold"sv,
@@ -44,34 +29,25 @@ constexpr std::array kAllButEStop{"QuitEStop"sv,
                                   "SetJoystickMode:Rotation"sv,
                                   "MoveJoystick:0:0:0"sv,
                                   "RunObjective:Home"sv};
+
+/// The others of them, in their order.
+template <class... LeftOut>
+constexpr auto all_but(LeftOut... left_out) {
+  std::array<std::string_view, kAllButEStop.size() - sizeof...(left_out)> others;
+  std::ranges::copy_if(kAllButEStop, others.begin(),
+                       [&](std::string_view one) { return ((one != left_out) && ...); });
+  return others;
+}
+
+constexpr auto kAllButStops = all_but("QuitEStop"sv);
+constexpr auto kAllButInitialize = all_but("QuitEStop"sv, "Initialize"sv);
 constexpr std::array kNotInIdle{"Unfold"sv, "Unfreeze"sv, "MoveJoystick:0:0:0"sv, "QuitEStop"sv};
-constexpr std::array kNotInRetracted{"QuitEStop"sv,
-                                     "Initialize"sv,
-                                     "Freeze"sv,
-                                     "Unfreeze"sv,
-                                     "SetJoystickMode:Rotation"sv,
-                                     "MoveJoystick:0:0:0"sv,
-                                     "RunObjective:Home"sv};
-constexpr std::array kNotInSettingMode{"QuitEStop"sv,
-                                       "Initialize"sv,
-                                       "Unfold"sv,
-                                       "Freeze"sv,
-                                       "Unfreeze"sv,
-                                       "SetJoystickMode:Rotation"sv,
-                                       "MoveJoystick:0:0:0"sv,
-                                       "RunObjective:Home"sv};
+constexpr auto kNotInRetracted = all_but("Unfold"sv, "Retract"sv);
+constexpr auto kNotInSettingMode = all_but("Retract"sv);
 constexpr std::array kNotInSteering{"Initialize"sv, "Unfold"sv, "Retract"sv, "Unfreeze"sv,
                                     "QuitEStop"sv};
-constexpr std::array kNotInRunning{"QuitEStop"sv,         "Initialize"sv, "Unfold"sv,
-                                   "Retract"sv,           "Freeze"sv,     "Unfreeze"sv,
-                                   "MoveJoystick:0:0:0"sv};
-constexpr std::array kNotInFrozen{"QuitEStop"sv,
-                                  "Initialize"sv,
-                                  "Unfold"sv,
-                                  "Retract"sv,
-                                  "SetJoystickMode:Rotation"sv,
-                                  "MoveJoystick:0:0:0"sv,
-                                  "RunObjective:Home"sv};
+constexpr auto kNotInRunning = all_but("SetJoystickMode:Rotation"sv, "RunObjective:Home"sv);
+constexpr auto kNotInFrozen = all_but("Freeze"sv, "Unfreeze"sv);
 
 template <emulation::State state, const auto& commands>
 void refused(ServerBench& server) {

@@ -16,23 +16,28 @@ void reserved(NodeBench& node) {
 
 void general_call(NodeBench& node) { node.expect_absent({0}); }
 
+void expect_own_address(NodeBench& node) {
+  node.expect_same(node.read_on(1), std::vector{std::byte{node.address().value}});
+}
+void choose_status_at(NodeBench& node, BusAddress other) {
+  std::ignore = node.write(other, std::vector{static_cast<std::byte>(kReadMotorStatus)});
+}
+
 void other_node(NodeBench& node) {
   node.send(kReadAddress);
-  const std::vector status{static_cast<std::byte>(kReadMotorStatus)};
   for (std::uint8_t other = 0; other <= kLastDocumentedNode; ++other) {
     const BusAddress address{node_address(other)};
     if (address == node.address()) continue;
-    std::ignore = node.write(address, status);
+    choose_status_at(node, address);
     node.about(fmt::format("its own address, behind a choice made at {:02X}", address.value));
-    node.expect_same(node.read_on(1), std::vector{std::byte{node.address().value}});
+    expect_own_address(node);
   }
 }
 
 void seven_bits(NodeBench& node) {
   node.send(kReadAddress);
-  const BusAddress other{static_cast<std::uint8_t>(node.address().value ^ 0x40U)};
-  std::ignore = node.write(other, std::vector{static_cast<std::byte>(kReadMotorStatus)});
-  node.expect_same(node.read_on(1), std::vector{std::byte{node.address().value}});
+  choose_status_at(node, {static_cast<std::uint8_t>(node.address().value ^ 0x40U)});
+  expect_own_address(node);
 }
 
 void acknowledges(NodeBench& node) {
@@ -64,7 +69,7 @@ void repeated_start(NodeBench& node) {
   node.send_bytes("83", BusBench::End::kOpen);
   node.expect_read_on("03");
   node.send_bytes("88", BusBench::End::kOpen);
-  node.expect_same(node.read_on(1), std::vector{std::byte{node.address().value}});
+  expect_own_address(node);
 }
 
 void without_stop(NodeBench& node) {

@@ -11,11 +11,7 @@ void other_kind(NodeBench& node) {
                  kFailure);
 }
 
-void zero_rate(NodeBench& node) {
-  node.needs_emulation();
-  node.send(proportional(0, 1.0F));
-  node.expect_programming(kFailure);
-}
+void zero_rate(NodeBench& node) { expect_of_zero_rate(node, kFailure); }
 
 void zero_pole(NodeBench& node) { expect_outcome(node, "22 00 CD CC 4C 3E 00 00 00 00", kFailure); }
 

@@ -135,17 +135,20 @@ void sign(NodeBench& node) {
   node.expect_number(kReadAngle, -count);
 }
 
-void uncalibrated(NodeBench& node) {
-  node.expect_status(MotorStatus::kNeedsCalibration);
+void expect_turned(NodeBench& node) {
   node.turn(1000);
   node.expect_bytes(kReadAngle, node.motor().thousand_counts);
+}
+
+void uncalibrated(NodeBench& node) {
+  node.expect_status(MotorStatus::kNeedsCalibration);
+  expect_turned(node);
 }
 
 void while_disabled(NodeBench& node) {
   node.send(kCalibrateZero);
   node.tick();
-  node.turn(1000);
-  node.expect_bytes(kReadAngle, node.motor().thousand_counts);
+  expect_turned(node);
 }
 
 void over_disable(NodeBench& node) {

@@ -128,35 +128,34 @@ void no_inertia(NodeBench& node) {
   expect_outcome(node, "22 00 00 00 00 00 00 00 10 C1", kSuccess);
 }
 
-constexpr Case tuning(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
-                      Start start = kProgrammable) {
-  return from(start, Hazard::kProgram, requirement, rule, run);
-}
-
 constexpr Case kCases[] = {
-    tuning("morap.tune.success", "0.2 kg m^2 and -9.", on<success>),
-    tuning("morap.tune.at-the-byte", "With a repeated start.", on<at_the_byte>),
-    tuning("morap.tune.pd", "Light and heavy loads, slow and fast poles.", on<tuned<kPdPosition>>),
-    tuning("morap.tune.pid", "Light and heavy loads, slow and fast poles.",
-           on<tuned<kPidPosition>>),
-    tuning("morap.tune.pi", "Light and heavy loads, slow and fast poles.", on<tuned<kPiSpeed>>),
-    tuning("morap.tune.position-rate", "Around the border, with PD and PID.", on<position_rate>),
-    tuning("morap.tune.speed-rate", "Around both borders.", on<speed_rate>),
-    tuning("morap.tune.pole-of-motor", "Two that are faster, one that is not.", on<pole_of_motor>),
-    tuning("morap.tune.at-tick", "Read before and behind the tick.", on<at_tick>, kFresh),
-    tuning("morap.tune.positive-pole", "1.", on<positive_pole>),
-    tuning("morap.tune.fast-pole", "-200.01.", on<fast_pole>),
-    tuning("morap.tune.fastest-pole", "-200.", on<fastest_pole>),
-    tuning("morap.tune.heavy", "11, and the next above 10.", on<heavy>),
-    tuning("morap.tune.heaviest", "10.", on<heaviest>),
-    tuning("morap.tune.negative-inertia", "-0.2.", on<negative_inertia>),
-    tuning("morap.tune.unknown-kind", "3 and 255.", on<unknown_kind>),
-    tuning("morap.tune.failure-unused", "One of each controller.", on<failure_unused>),
-    tuning("morap.tune.short", "One byte is missing.", on<short_message>),
-    tuning("morap.tune.surplus", "One byte more.", on<surplus>),
-    tuning("morap.tune.pieces", "The pole in a write of its own.", on<pieces>),
-    tuning("morap.tune.zero-pole", "0.", on<zero_pole>),
-    tuning("morap.tune.no-inertia", "0, never run.", on<no_inertia>, kFresh),
+    programming("morap.tune.success", "0.2 kg m^2 and -9.", on<success>),
+    programming("morap.tune.at-the-byte", "With a repeated start.", on<at_the_byte>),
+    programming("morap.tune.pd", "Light and heavy loads, slow and fast poles.",
+                on<tuned<kPdPosition>>),
+    programming("morap.tune.pid", "Light and heavy loads, slow and fast poles.",
+                on<tuned<kPidPosition>>),
+    programming("morap.tune.pi", "Light and heavy loads, slow and fast poles.",
+                on<tuned<kPiSpeed>>),
+    programming("morap.tune.position-rate", "Around the border, with PD and PID.",
+                on<position_rate>),
+    programming("morap.tune.speed-rate", "Around both borders.", on<speed_rate>),
+    programming("morap.tune.pole-of-motor", "Two that are faster, one that is not.",
+                on<pole_of_motor>),
+    programming("morap.tune.at-tick", "Read before and behind the tick.", on<at_tick>, kFresh),
+    programming("morap.tune.positive-pole", "1.", on<positive_pole>),
+    programming("morap.tune.fast-pole", "-200.01.", on<fast_pole>),
+    programming("morap.tune.fastest-pole", "-200.", on<fastest_pole>),
+    programming("morap.tune.heavy", "11, and the next above 10.", on<heavy>),
+    programming("morap.tune.heaviest", "10.", on<heaviest>),
+    programming("morap.tune.negative-inertia", "-0.2.", on<negative_inertia>),
+    programming("morap.tune.unknown-kind", "3 and 255.", on<unknown_kind>),
+    programming("morap.tune.failure-unused", "One of each controller.", on<failure_unused>),
+    programming("morap.tune.short", "One byte is missing.", on<short_message>),
+    programming("morap.tune.surplus", "One byte more.", on<surplus>),
+    programming("morap.tune.pieces", "The pole in a write of its own.", on<pieces>),
+    programming("morap.tune.zero-pole", "0.", on<zero_pole>),
+    programming("morap.tune.no-inertia", "0, never run.", on<no_inertia>, kFresh),
 };
 
 }  // namespace

@@ -125,6 +125,11 @@ void inputs_always(BoardBench& board) {
 }
 
 void press(BoardBench& board) { board.touch("estop", 0); }
+void press_while_jogging(BoardBench& board) {
+  board.spoil();
+  board.act(jog(4, 500));
+  press(board);
+}
 void release(BoardBench& board) { board.touch("estop", 1); }
 
 void expect_jog(BoardBench& board, std::string_view what) {
@@ -137,9 +142,7 @@ void expect_no_jog(BoardBench& board, std::string_view what) {
 }
 
 void estop_reported(BoardBench& board) {
-  board.spoil();
-  board.act(jog(4, 500));
-  press(board);
+  press_while_jogging(board);
   const auto stretch = run(board, jog(4, 500), 100ms);
   board.about("a jog with the emergency stop pressed");
   board.expect_bits(stretch.after, "io", io_flag::kEstopReleased, 0);
@@ -149,9 +152,7 @@ void estop_reported(BoardBench& board) {
 }
 
 void estop_disables(BoardBench& board) {
-  board.spoil();
-  board.act(jog(4, 500));
-  press(board);
+  press_while_jogging(board);
   board.pause(BoardBench::kPassTime);
   expect_no_jog(board, "a jog with the emergency stop pressed");
   release(board);
