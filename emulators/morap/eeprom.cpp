@@ -60,6 +60,15 @@ void store_set(std::span<std::byte> out, const ControllerSet& set) noexcept {
   store_f32_le(slice<4>(out, kIntegralPlace), set.integral);
 }
 
+Eeprom image_of(std::uint8_t node, const MotorConstants& motor, const Coefficients& position,
+                const ControllerSet& speed) noexcept {
+  return {Eeprom::kMarker,
+          node,
+          motor,
+          {ControllerKind::kPosition, 625, position, position, {1, {-0.9716F}}, 0.0F},
+          speed};
+}
+
 }  // namespace
 
 ReadBack read_back(const ControllerSet& set) noexcept {
@@ -116,33 +125,25 @@ bool is_usable(const Eeprom& eeprom, const Profile& profile) noexcept {
 }
 
 Eeprom dcx22l(std::uint8_t node) noexcept {
-  const MotorConstants motor{2.16F, 0.000192F, 0.0229F, 231.20308F, 0.1F, 0.74F, 1.5F, 128.0F};
-  const Coefficients position{2, {-1.5711F, 2.2623F}};
-  return {Eeprom::kMarker,
-          node,
-          motor,
-          {ControllerKind::kPosition, 625, position, position, {1, {-0.9716F}}, 0.0F},
-          {ControllerKind::kSpeed,
-           500,
-           {2, {0.0604F, 0.0604F}},
-           {2, {-1.0024F, 1.6352F}},
-           {1, {-0.5948F}},
-           0.4904F}};
+  return image_of(node, {2.16F, 0.000192F, 0.0229F, 231.20308F, 0.1F, 0.74F, 1.5F, 128.0F},
+                  {2, {-1.5711F, 2.2623F}},
+                  {ControllerKind::kSpeed,
+                   500,
+                   {2, {0.0604F, 0.0604F}},
+                   {2, {-1.0024F, 1.6352F}},
+                   {1, {-0.5948F}},
+                   0.4904F});
 }
 
 Eeprom dcx26l(std::uint8_t node) noexcept {
-  const MotorConstants motor{1.07F, 0.000129F, 0.0214F, 149.0F, 0.05F, 0.75F, 1.5F, 128.0F};
-  const Coefficients position{2, {-1.5937F, 2.0104F}};
-  return {Eeprom::kMarker,
-          node,
-          motor,
-          {ControllerKind::kPosition, 625, position, position, {1, {-0.9716F}}, 0.0F},
-          {ControllerKind::kSpeed,
-           400,
-           {2, {0.0284F, 0.0284F}},
-           {2, {-0.5653F, 0.8839F}},
-           {1, {-0.6251F}},
-           0.2524F}};
+  return image_of(node, {1.07F, 0.000129F, 0.0214F, 149.0F, 0.05F, 0.75F, 1.5F, 128.0F},
+                  {2, {-1.5937F, 2.0104F}},
+                  {ControllerKind::kSpeed,
+                   400,
+                   {2, {0.0284F, 0.0284F}},
+                   {2, {-0.5653F, 0.8839F}},
+                   {1, {-0.6251F}},
+                   0.2524F});
 }
 
 }  // namespace armjig::morap::emulation

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -18,25 +19,24 @@ constexpr std::size_t kPolePlace = 6;
 
 // Parameter messages.
 template <class Edit>
-void edit_set(Words& command, Edit edit) {
-  if (!is(command, kProgram)) return;
-  const auto decoded = decode_set(Bytes{command}.subspan(1));
+std::optional<SetBytes> edited(Bytes message, Edit edit) {
+  const auto decoded = decode_set(message);
   const auto* good = std::get_if<ControllerSet>(&decoded);
-  if (good == nullptr) return;
+  if (good == nullptr) return std::nullopt;
   auto set = *good;
   edit(set);
-  const auto bytes = encode(set);
-  std::ranges::copy(bytes.view(), command.begin() + 1);
+  return encode(set);
+}
+template <class Edit>
+void edit_set(Words& command, Edit edit) {
+  if (!is(command, kProgram)) return;
+  const auto bytes = edited(Bytes{command}.subspan(1), edit);
+  if (bytes) std::ranges::copy(bytes->view(), command.begin() + 1);
 }
 template <class Edit>
 void edit_answer(Words& answer, Edit edit) {
-  const auto decoded = decode_set(answer);
-  const auto* good = std::get_if<ControllerSet>(&decoded);
-  if (good == nullptr) return;
-  auto set = *good;
-  edit(set);
-  const auto bytes = encode(set);
-  answer.assign(bytes.view().begin(), bytes.view().end());
+  const auto bytes = edited(answer, edit);
+  if (bytes) answer.assign(bytes->view().begin(), bytes->view().end());
 }
 
 /// Keeps the coefficients in the wrong order, or with the wrong sign, and reads them back right.

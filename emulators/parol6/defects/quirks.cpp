@@ -106,18 +106,13 @@ constexpr Say kHomedOnlyWhole = [](TelemetryFrame& answer, const CommandFrame&, 
 };
 constexpr Say kHomedStays = [](TelemetryFrame& answer, const CommandFrame&, QuirkMemory& memory,
                                const Board&) { answer.homed |= memory.before.said.homed; };
-constexpr Say kHomedLostByJog = [](TelemetryFrame& answer, const CommandFrame& asked,
-                                   QuirkMemory& memory, const Board& board) {
-  if (asked.command == Command::kJog) memory.is_set = true;
-  if (board.is_homing()) memory.is_set = false;
-  if (memory.is_set) answer.homed = kNoneHomed;
-};
-constexpr Say kHomedLostByDisable = [](TelemetryFrame& answer, const CommandFrame& asked,
-                                       QuirkMemory& memory, const Board& board) {
-  if (asked.command == Command::kDisable) memory.is_set = true;
-  if (board.is_homing()) memory.is_set = false;
-  if (memory.is_set) answer.homed = kNoneHomed;
-};
+template <Command command>
+constexpr Say kHomedLostBy =
+    [](TelemetryFrame& answer, const CommandFrame& asked, QuirkMemory& memory, const Board& board) {
+      if (asked.command == command) memory.is_set = true;
+      if (board.is_homing()) memory.is_set = false;
+      if (memory.is_set) answer.homed = kNoneHomed;
+    };
 constexpr Say kEstopInverted = [](TelemetryFrame& answer, const CommandFrame&, QuirkMemory&,
                                   const Board&) { answer.io ^= io_flag::kEstopReleased; };
 constexpr Say kEstopLatched = [](TelemetryFrame& answer, const CommandFrame&, QuirkMemory& memory,
@@ -243,8 +238,8 @@ constexpr std::array kQuirks{
     says("homed-with-base", "Homing", kHomedWithBase),
     says("homed-only-whole", "Homing", kHomedOnlyWhole),
     says("homed-stays", "Homing", kHomedStays),
-    says("homed-lost-by-jog", "Homing", kHomedLostByJog),
-    says("homed-lost-by-disable", "Homing", kHomedLostByDisable),
+    says("homed-lost-by-jog", "Homing", kHomedLostBy<Command::kJog>),
+    says("homed-lost-by-disable", "Homing", kHomedLostBy<Command::kDisable>),
     says("estop-inverted", "Inputs and outputs", kEstopInverted),
     says("estop-latched", "Inputs and outputs", kEstopLatched),
     says("inputs-swapped", "Inputs and outputs", kInputsSwapped),
