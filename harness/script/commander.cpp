@@ -226,15 +226,13 @@ ParseResult parse_commander(const Lines& lines) {
     }
     program.statements.push_back(read_statement(line, program.remarks));
   }
-  const auto hangs = [](Statement& statement) {
+  const auto hangs = [](Statement& statement, std::vector<Diagnostic>& /*errors*/) {
     statement.command =
         Flaw{Flaw::Effect::kHangs, "the commander hangs at a Begin() that is not its first line"};
   };
   const Frame frame{
       {1, 1}, "the first line has to be Begin()", "the last line has to be End() or Loop()", hangs};
-  if (errors.empty()) check_frame(program.statements, frame, errors);
-  if (!errors.empty()) return tl::unexpected{std::move(errors)};
-  return program;
+  return checked(std::move(program), frame, std::move(errors));
 }
 
 }  // namespace armjig::script

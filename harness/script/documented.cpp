@@ -306,17 +306,15 @@ ParseResult parse_documented(const Lines& lines) {
     if (statement) program.statements.push_back(*std::move(statement));
     if (errors.size() == kMostErrors) break;
   }
-  const auto refuse = [&](const Statement& statement) {
-    errors.push_back(
+  const auto refuse = [](const Statement& statement, std::vector<Diagnostic>& all) {
+    all.push_back(
         {Severity::kError, statement.place, "Begin() stands once, in front of all others"});
   };
   const Frame frame{{lines.empty() ? 1 : std::max(lines.back().number, 1), 1},
                     "the first command should be Begin()",
                     "the last command should be End() or Loop()",
                     refuse};
-  if (errors.empty()) check_frame(program.statements, frame, errors);
-  if (!errors.empty()) return tl::unexpected{std::move(errors)};
-  return program;
+  return checked(std::move(program), frame, std::move(errors));
 }
 
 }  // namespace armjig::script

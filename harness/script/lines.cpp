@@ -8,6 +8,7 @@
 #include <charconv>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 namespace armjig::script {
 namespace {
@@ -37,6 +38,25 @@ constexpr std::array kNames{
     Name{"Input", Keyword::kInput},
     Name{"SpeedJoint", Keyword::kSpeedJoint},
 };
+
+void check_frame(std::vector<Statement>& statements, const Frame& frame,
+                 std::vector<Diagnostic>& errors) {
+  const auto add = [&](Place place, std::string_view text) {
+    errors.push_back({Severity::kError, place, std::string{text}});
+  };
+  if (statements.empty()) return add(frame.if_empty, "there is no command in it");
+  if (!std::holds_alternative<Begin>(statements.front().command)) {
+    add(statements.front().place, frame.first);
+  }
+  for (std::size_t i = 1; i < statements.size(); ++i) {
+    if (!std::holds_alternative<Begin>(statements[i].command)) continue;
+    frame.late_begin(statements[i], errors);
+  }
+  const auto& last = statements.back();
+  if (!std::holds_alternative<End>(last.command) && !std::holds_alternative<Loop>(last.command)) {
+    add(last.place, frame.last);
+  }
+}
 
 }  // namespace
 
@@ -134,22 +154,10 @@ double value_of(std::string_view number) noexcept {
                                  : std::numeric_limits<double>::infinity();
 }
 
-void check_frame(std::vector<Statement>& statements, const Frame& frame,
-                 std::vector<Diagnostic>& errors) {
-  const auto add = [&](Place place, std::string_view text) {
-    errors.push_back({Severity::kError, place, std::string{text}});
-  };
-  if (statements.empty()) return add(frame.if_empty, "there is no command in it");
-  if (!std::holds_alternative<Begin>(statements.front().command)) {
-    add(statements.front().place, frame.first);
-  }
-  for (std::size_t i = 1; i < statements.size(); ++i) {
-    if (std::holds_alternative<Begin>(statements[i].command)) frame.late_begin(statements[i]);
-  }
-  const auto& last = statements.back();
-  if (!std::holds_alternative<End>(last.command) && !std::holds_alternative<Loop>(last.command)) {
-    add(last.place, frame.last);
-  }
+ParseResult checked(Program program, const Frame& frame, std::vector<Diagnostic> errors) {
+  if (errors.empty()) check_frame(program.statements, frame, errors);
+  if (!errors.empty()) return tl::unexpected{std::move(errors)};
+  return program;
 }
 
 }  // namespace armjig::script

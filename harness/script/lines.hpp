@@ -90,11 +90,12 @@ struct Frame {
   Place if_empty;  ///< where it says that there is no command
   std::string_view first;
   std::string_view last;
-  std::function<void(Statement&)>
-      late_begin;  ///< gets each `Begin()` that is not the first command
+  /// Gets each `Begin()` that is not the first command.
+  std::function<void(Statement&, std::vector<Diagnostic>& errors)> late_begin;
 };
-void check_frame(std::vector<Statement>& statements, const Frame& frame,
-                 std::vector<Diagnostic>& errors);
+/// The program unless there are errors, or would be with those of its frame.
+[[nodiscard]] ParseResult checked(Program program, const Frame& frame,
+                                  std::vector<Diagnostic> errors);
 
 inline constexpr std::size_t kMostErrors = 20;
 

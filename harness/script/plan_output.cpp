@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "harness/arm/arm.hpp"
 #include "harness/arm/models.hpp"
@@ -16,6 +15,7 @@
 #include "harness/motion/parol6/conversion.hpp"
 #include "harness/motion/parol6/joint_table.hpp"
 #include "harness/script/format.hpp"
+#include "harness/script/json_line.hpp"
 
 namespace armjig::script {
 namespace {
@@ -259,8 +259,7 @@ std::string to_json(const Program& program, const Schedule& schedule, std::strin
   if (schedule.stop) {
     json["stops"] = {{"line", schedule.stop->place.line}, {"text", schedule.stop->text}};
   }
-  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
-  return json.dump(-1, ' ', false, kReplace) + '\n';
+  return json_line(json);
 }
 
 Report to_report(const Program& program, const Schedule& schedule, std::string_view file) {

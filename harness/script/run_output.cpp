@@ -12,6 +12,7 @@
 #include "harness/motion/parol6/conversion.hpp"
 #include "harness/motion/parol6/joint_table.hpp"
 #include "harness/script/format.hpp"
+#include "harness/script/json_line.hpp"
 
 namespace armjig::script {
 namespace {
@@ -94,8 +95,7 @@ std::string to_json(const Program& program, const ProgramRun& run, const RunFact
   for (const auto& position : facts.position) {
     json["final_position_steps"].push_back(position.value);
   }
-  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
-  return json.dump(-1, ' ', false, kReplace) + '\n';
+  return json_line(json);
 }
 
 RunPlots run_plots(const ProgramRun& run) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/hex.hpp"
+#include "harness/script/json_line.hpp"
 
 namespace armjig::script {
 namespace {
@@ -56,8 +57,7 @@ std::string to_trace(const Schedule& schedule, std::string_view title) {
       {"title", title},
       {"duration_us", schedule.frames.size() * kTickMicroseconds},
   };
-  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
-  auto text = header.dump(-1, ' ', false, kReplace) + '\n';
+  auto text = json_line(header);
   for (std::size_t i = 0; i < schedule.frames.size(); ++i) {
     fmt::format_to(std::back_inserter(text),
                    "{{\"t_us\":{},\"dir\":\"to_device\",\"hex\":\"{}\"}}\n", i * kTickMicroseconds,
