@@ -2,7 +2,6 @@
 #include "harness/arm/arm.hpp"
 
 #include <cassert>
-#include <limits>
 #include <utility>
 
 namespace armjig::arm {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "harness/arm/angle.hpp"
+
 namespace armjig::arm {
 namespace {
 
@@ -51,13 +53,6 @@ std::array<Line, 6> axes_of(const Arm& arm) noexcept {
 /// The orientation whose z and y axes are these.
 Rotation from_z_and_y(const Vector3& z, const Vector3& y) noexcept {
   return inverse(Rotation{{cross(y, z), y, z}});
-}
-
-/// Into (-pi, pi], from at most one turn outside.
-double wrapped(double angle) noexcept {
-  if (angle > pi) return angle - 2 * pi;
-  if (angle <= -pi) return angle + 2 * pi;
-  return angle;
 }
 
 double square(double x) noexcept { return x * x; }

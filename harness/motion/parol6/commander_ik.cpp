@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/arm/angle.hpp"
 #include "harness/arm/jacobian.hpp"
 
 namespace armjig::parol6::planning {
@@ -42,12 +43,6 @@ Matrix6 jacobian_of(const arm::Arm& arm, const arm::SixJoints& joints) noexcept 
   return matrix;
 }
 
-double wrapped_once(double angle) noexcept {
-  if (angle > pi) return angle - 2 * pi;
-  if (angle <= -pi) return angle + 2 * pi;
-  return angle;
-}
-
 }  // namespace
 
 CommanderIkAnswer commander_ik(const arm::Arm& arm, const arm::Pose& pose,
@@ -64,7 +59,7 @@ CommanderIkAnswer commander_ik(const arm::Arm& arm, const arm::Pose& pose,
         jacobian.transpose() * jacobian + (squared + kDamping) * Matrix6::Identity();
     const Vector6 way = normal.partialPivLu().solve(jacobian.transpose() * error);
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      joints[j] = wrapped_once(joints[j] + way[static_cast<Eigen::Index>(j)]);
+      joints[j] = arm::wrapped(joints[j] + way[static_cast<Eigen::Index>(j)]);
     }
   }
   return {joints, false, iterations};

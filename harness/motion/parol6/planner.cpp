@@ -24,18 +24,34 @@ arm::Pose pose_of(const std::array<double, 6>& numbers, arm::Convention conventi
           {x / 1000, y / 1000, z / 1000}};
 }
 
+/// Where the commander sends a joint; it cuts off fractions of a step.
+struct JointGoal {
+  double radians{};
+  double steps{};
+};
+
+template <class GoalOf>
+Planned plan_commander_joints(const Move& move, const JointSteps& start,
+                              const PlannerSettings& settings, CommanderTarget target,
+                              GoalOf goal_of) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const JointGoal goal = goal_of(j);
+    target.radians[j] = goal.radians;
+    target.steps[j] = Steps{cut_off(goal.steps)};
+  }
+  return plan_commander_joints(target, start, move.timing, move.tracking, settings.limits);
+}
+
 Planned plan_joints(const Move& move, const JointSteps& start, const PlannerSettings& settings) {
   if (settings.rules == Rules::kDocumented) {
     arm::SixJoints target{};
     for (std::size_t j = 0; j < kJointCount; ++j) target[j] = to_radians(move.target[j]);
     return plan_documented_joints(target, start, move.timing, move.tracking, settings.limits);
   }
-  CommanderTarget target{.default_speed = 45, .default_acceleration = 27};
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    target.radians[j] = to_radians(move.target[j] + kNudge);
-    target.steps[j] = Steps{cut_off(steps_of_degrees(j, move.target[j]))};
-  }
-  return plan_commander_joints(target, start, move.timing, move.tracking, settings.limits);
+  const CommanderTarget target{.default_speed = 45, .default_acceleration = 27};
+  return plan_commander_joints(move, start, settings, target, [&](std::size_t j) {
+    return JointGoal{to_radians(move.target[j] + kNudge), steps_of_degrees(j, move.target[j])};
+  });
 }
 
 /// The commander begins its search at the same posture wherever the arm is, and takes what it finds
@@ -48,12 +64,10 @@ Planned plan_commander_pose(const Move& move, const JointSteps& start,
   }
   const auto pose = pose_of(move.target, settings.convention);
   const auto answer = commander_ik(arm::parol6_commander(), pose, seed);
-  CommanderTarget target{.default_speed = 50, .default_acceleration = 30};
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    target.radians[j] = answer.joints[j] + kNudge;
-    target.steps[j] = Steps{cut_off(steps_of_radians(j, answer.joints[j]))};
-  }
-  return plan_commander_joints(target, start, move.timing, move.tracking, settings.limits);
+  const CommanderTarget target{.default_speed = 50, .default_acceleration = 30};
+  return plan_commander_joints(move, start, settings, target, [&](std::size_t j) {
+    return JointGoal{answer.joints[j] + kNudge, steps_of_radians(j, answer.joints[j])};
+  });
 }
 
 Planned plan_documented_pose(const Move& move, const JointSteps& start,
