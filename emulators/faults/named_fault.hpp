@@ -27,6 +27,15 @@ template <class Table>
   return found == table.end() ? nullptr : &*found;
 }
 
+/// Puts what the table has by that name, or rather where it stands, at the end of `chosen`. False:
+/// nothing has it.
+template <class Table, class Chosen>
+[[nodiscard]] bool choose_named(const Table& table, std::string_view name, Chosen& chosen) {
+  const auto* const found = find_named(table, name);
+  if (found != nullptr) chosen.push_back(found);
+  return found != nullptr;
+}
+
 /// What stands in front of the first `mark`, which is taken away with it.
 [[nodiscard]] constexpr std::string_view take_until(std::string_view& text, char mark) {
   const auto place = text.find(mark);

@@ -25,14 +25,13 @@ class ServerFront final : public Front {
       return problem(ErrorCode::kBadValue, "host",
                      "a server has connections: it is on a TCP port and nowhere else");
     }
-    auto listener = listen_on_tcp(
-        loop_.context(), *options.tcp,
-        {.on_client = [this](const std::shared_ptr<TcpConnection>& client) { admit(client); },
-         .has_room = [this] { return clients_.size() < kMostClients; },
-         .on_log = [this](std::string_view line) { loop_.log(line); }});
-    if (!listener) return tl::unexpected{listener.error()};
-    listener_ = *std::move(listener);
-    return {};
+    return listen_on_tcp(
+               loop_.context(), *options.tcp,
+               {.on_client =
+                    [this](const std::shared_ptr<TcpConnection>& client) { admit(client); },
+                .has_room = [this] { return clients_.size() < kMostClients; },
+                .on_log = [this](std::string_view line) { loop_.log(line); }})
+        .map([this](auto listener) { listener_ = std::move(listener); });
   }
 
   void forward() override {

@@ -19,14 +19,13 @@ class TcpLink final : public ClientLink {
       : linger_{context}, events_{std::move(events)} {}
 
   [[nodiscard]] Outcome<void> listen(boost::asio::io_context& context, const TcpOptions& options) {
-    auto listener = listen_on_tcp(
-        context, options,
-        {.on_client = [this](std::shared_ptr<TcpConnection> client) { admit(std::move(client)); },
-         .has_room = [] { return true; },
-         .on_log = events_.on_log});
-    if (!listener) return tl::unexpected{listener.error()};
-    listener_ = *std::move(listener);
-    return {};
+    return listen_on_tcp(
+               context, options,
+               {.on_client =
+                    [this](std::shared_ptr<TcpConnection> client) { admit(std::move(client)); },
+                .has_room = [] { return true; },
+                .on_log = events_.on_log})
+        .map([this](auto listener) { listener_ = std::move(listener); });
   }
 
   void send(Bytes message) override {

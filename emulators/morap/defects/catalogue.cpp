@@ -149,9 +149,7 @@ bool add_spoilt(std::string_view text, NodeSetup& setup, Defects&) {
   return found != nullptr;
 }
 bool add_quirk(std::string_view text, NodeSetup&, Defects& defects) {
-  const auto* const found = find_named(quirks(), text);
-  if (found != nullptr) defects.quirks.push_back(found);
-  return found != nullptr;
+  return choose_named(quirks(), text, defects.quirks);
 }
 
 constexpr std::array kWords{Named<Add>{"in", add_heard},

@@ -98,9 +98,7 @@ bool add_ears(std::string_view text, ArmOptions& /*arm*/, Defects& defects) {
 }
 
 bool add_quirk(std::string_view text, ArmOptions& /*arm*/, Defects& defects) {
-  const auto* const found = find_named(quirks(), text);
-  if (found != nullptr) defects.quirks.push_back(found);
-  return found != nullptr;
+  return choose_named(quirks(), text, defects.quirks);
 }
 
 bool add_profile(std::string_view text, ArmOptions& arm, Defects& /*defects*/) {
