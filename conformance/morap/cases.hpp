@@ -30,6 +30,12 @@ inline void expect_outcome(NodeBench& node, std::string_view message, Programmin
   node.expect_programming(wanted);
 }
 
+/// Counts of the encoder, and the angle that they are.
+inline void expect_turned(NodeBench& node) {
+  node.turn(1000);
+  node.expect_bytes(kReadAngle, node.motor().thousand_counts);
+}
+
 /// Of a controller that would never run.
 inline void expect_of_zero_rate(NodeBench& node, ProgrammingStatus wanted) {
   node.needs_emulation();

@@ -64,10 +64,7 @@ void short_read(NodeBench& node) {
   node.expect_read_on("CD CC 4C 3E");
 }
 
-void little_endian(NodeBench& node) {
-  node.turn(1000);
-  node.expect_bytes(kReadAngle, node.motor().thousand_counts);
-}
+void little_endian(NodeBench& node) { expect_turned(node); }
 
 void snapshot(NodeBench& node) {
   node.turn(1000);

@@ -135,11 +135,6 @@ void sign(NodeBench& node) {
   node.expect_number(kReadAngle, -count);
 }
 
-void expect_turned(NodeBench& node) {
-  node.turn(1000);
-  node.expect_bytes(kReadAngle, node.motor().thousand_counts);
-}
-
 void uncalibrated(NodeBench& node) {
   node.expect_status(MotorStatus::kNeedsCalibration);
   expect_turned(node);
