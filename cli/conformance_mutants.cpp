@@ -8,7 +8,6 @@
 #include <memory>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "cli/choice.hpp"
 #include "cli/device.hpp"

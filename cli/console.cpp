@@ -13,7 +13,6 @@
 #include <string>
 #include <string_view>
 #include <thread>
-#include <utility>
 
 #include "cli/device.hpp"
 #include "cli/line_editor.hpp"

@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <utility>
-
 namespace armjig {
 
 void Bench::begin(Profile profile, std::uint64_t seed) {

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 
 #include "cli/device.hpp"
 #include "cli/target_options.hpp"

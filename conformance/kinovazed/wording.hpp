@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
-
 #include "conformance/kinovazed/server_bench.hpp"
 
 namespace armjig::kinovazed::conformance {

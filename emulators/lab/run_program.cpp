@@ -10,8 +10,6 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <string>
-#include <vector>
 
 namespace armjig {
 namespace {

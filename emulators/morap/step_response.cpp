@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <tuple>
-#include <variant>
 
 namespace armjig::morap::emulation {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/parol6/joint.hpp"
 
-#include <algorithm>
-
 namespace armjig::parol6::emulation {
 namespace {
 

@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 

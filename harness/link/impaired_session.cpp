@@ -3,7 +3,6 @@
 
 #include <cassert>
 #include <tuple>
-#include <utility>
 
 namespace armjig {
 

@@ -13,7 +13,6 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 
 #include "harness/link/descriptor.hpp"
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "harness/wire/parol6/firmware_receiver.hpp"

@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <vector>
-
 #include "harness/link/i2c_dev.hpp"
 #include "harness/link/i2c_tiny_usb.hpp"
 #include "harness/link/real_streams.hpp"

@@ -2,7 +2,6 @@
 #include "harness/rig/rig.hpp"
 
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "harness/link/impaired_bus.hpp"

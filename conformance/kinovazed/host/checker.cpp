@@ -5,7 +5,6 @@
 
 #include <map>
 #include <optional>
-#include <utility>
 
 #include "conformance/kinovazed/host/conduct.hpp"
 #include "conformance/kinovazed/host/lines.hpp"

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <string_view>
 
 #include "conformance/program_checker.hpp"
 #include "harness/core/bytes.hpp"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/parol6/host/check.hpp"
 
-#include <utility>
-#include <variant>
-
 #include "conformance/parol6/host/conduct.hpp"
 #include "conformance/parol6/host/fields.hpp"
 #include "conformance/parol6/host/framing.hpp"

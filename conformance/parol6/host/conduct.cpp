@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 
 #include "harness/wire/parol6/joint_bounds.hpp"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <variant>
-#include <vector>
 
 #include "emulators/morap/defects/quirk_words.hpp"
 

@@ -2,7 +2,6 @@
 #include "emulators/parol6/defects/ears.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace armjig::parol6::emulation {
 namespace {

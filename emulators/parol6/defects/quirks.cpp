@@ -2,7 +2,6 @@
 #include "emulators/parol6/defects/quirks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <utility>
 

@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <utility>
-#include <variant>
 
 #include "harness/console/parol6/console.hpp"
 #include "harness/console/parol6/view.hpp"

@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"

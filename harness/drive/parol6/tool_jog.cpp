@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <string>
-#include <utility>
 
 #include "harness/arm/models.hpp"
 #include "harness/arm/orientation.hpp"
