@@ -91,8 +91,9 @@ Exit exec(Devices devices, const Options& options) {
     if (!made) return report(made.error());
     check = *std::move(made);
   }
-  const auto i2c = VirtualI2c::open(*std::move(bus), options.number,
-                                    check ? check->bus_listener() : BusListener{});
+  auto hosted = *std::move(bus);
+  if (check) hosted = check->watch(std::move(hosted));
+  const auto i2c = VirtualI2c::open(std::move(hosted), options.number);
   if (!i2c) return report(i2c.error());
   const auto code = run_program(options.program, i2c->environment());
   if (!code) return report(code.error());

@@ -23,13 +23,12 @@ class ProgramCheck {
   ProgramCheck(const ProgramCheckEntry& entry, const LinkNoise& noise,
                std::function<void(const Offence&)> on_offence);
 
-  /// The same device, overheard. `this` must outlive it.
+  /// The same device, overheard, perhaps in another thread. `this` must outlive it. Of a bus the
+  /// checker hears each message when it is over: the byte with address and direction, then the data
+  /// bytes, of both what was acknowledged.
   [[nodiscard]] std::unique_ptr<HostedStream> watch(std::unique_ptr<HostedStream> device);
   [[nodiscard]] std::unique_ptr<HostedServer> watch(std::unique_ptr<HostedServer> server);
-
-  /// For a bus, which may call it from any thread: the byte with address and direction, then the
-  /// data bytes that were acknowledged. `this` must outlive it.
-  [[nodiscard]] std::function<void(Instant time, Bytes message)> bus_listener();
+  [[nodiscard]] std::unique_ptr<HostedBus> watch(std::unique_ptr<HostedBus> bus);
 
   /// Ends the session: a row for each requirement, in the order of the catalogue.
   [[nodiscard]] Report finish();
@@ -40,8 +39,11 @@ class ProgramCheck {
  private:
   template <class Hosted>
   class Overheard;
+  template <class Hosted>
+  class OverheardSender;
   class OverheardStream;
   class OverheardServer;
+  class OverheardBus;
   struct Record {
     std::size_t count = 0;
     std::vector<Offence> first;

@@ -47,6 +47,8 @@ struct Requirement {
   Role role = Role::kDevice;
   /// Why no case can check it on the wire; empty if one does.
   std::string_view unobservable{};
+  /// Of role host: what a program has to do before it can break it, in words; empty: any message.
+  std::string_view occasion{};
 };
 
 /// Where a requirement stands in a document; lines count from 1.

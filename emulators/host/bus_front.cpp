@@ -14,7 +14,7 @@ class BusFront final : public Front {
   explicit BusFront(HostedBus& bus) : port_{&bus, kClockPatience} {}
 
   [[nodiscard]] Outcome<void> listen(const HostOptions& options) override {
-    if (!options.tcp && !options.pty && !options.line) return {};
+    if (!options.tcp && !options.pty) return {};
     return problem(ErrorCode::kBadValue, "host", "a bus has no pseudo-terminal and no TCP port");
   }
   void forward() override {}

@@ -13,6 +13,7 @@
 
 #include "emulators/host/loop.hpp"
 #include "emulators/host/paced_clock.hpp"
+#include "harness/timing/lookout.hpp"
 
 namespace armjig {
 namespace {
@@ -24,6 +25,8 @@ using Wall = PacedClock::Wall;
 /// A device that nobody asks is brought up to date this often, so that the next question need not
 /// wait for an hour of motion to be computed.
 constexpr auto kKeepUp = 10ms;
+/// If it takes that much longer, nobody looked after clients meanwhile.
+constexpr auto kLate = 10ms;
 /// Computing may take that long before clients have their turn again.
 constexpr auto kBudget = 50ms;
 /// Virtual time that is computed at once, between two looks at the budget.
@@ -59,7 +62,10 @@ class Host::LoopOnAsio final : public Loop {
     return listening;
   }
 
-  void run() { context_.run(); }
+  void run() {
+    (void)lookout_.look(Wall::now());  // before that nobody was promised anything
+    context_.run();
+  }
   void stop() { context_.stop(); }
 
   void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell) {
@@ -94,6 +100,9 @@ class Host::LoopOnAsio final : public Loop {
   Instant catch_up() override {
     const auto start = Wall::now();
     const auto present = clock_.virtual_time(start);
+    if (const auto gap = lookout_.look(start)) {
+      device_.overlook(clock_.virtual_time(gap->from), present);
+    }
     while (reached_ < present) {
       reached_ = std::min(present, reached_ + kStride);
       device_.advance_to(reached_);
@@ -142,6 +151,7 @@ class Host::LoopOnAsio final : public Loop {
   std::unique_ptr<Front> front_;
   Instant reached_;
   PacedClock clock_;
+  Lookout lookout_{kKeepUp + kLate, Wall::now()};
   boost::asio::steady_timer timer_;
   boost::asio::signal_set signals_;
   bool is_pump_posted_ = false;
@@ -156,10 +166,6 @@ Outcome<Host> Host::open(AnyHosted device, HostOptions options) {
   if (!PacedClock::is_speed(options.speed)) {
     return problem(ErrorCode::kBadValue, "speed",
                    "it is a factor from 0.001 to 10000; 1 is real time");
-  }
-  if (auto* const stream = std::get_if<std::unique_ptr<HostedStream>>(&device);
-      stream != nullptr && options.line) {
-    device = put_on_line(std::move(*stream), *options.line);
   }
   try {
     auto loop = std::make_unique<LoopOnAsio>(std::move(device), std::move(options));

@@ -11,7 +11,6 @@
 
 #include "emulators/host/client_link.hpp"
 #include "emulators/memory/hosted.hpp"
-#include "emulators/memory/serial_line.hpp"
 #include "harness/core/error.hpp"
 #include "harness/link/bus_port.hpp"
 
@@ -24,7 +23,6 @@ struct HostOptions {
 
   std::optional<PtyOptions> pty;
   std::optional<TcpOptions> tcp;
-  std::optional<CharacterRate> line;  ///< bytes take their time, as on a serial line; none: no time
   double speed = 1;  ///< virtual over wall time, `PacedClock::kSlowest` to `kFastest`
   OnSignal on_signal = OnSignal::kNothing;  ///< `kStop`: SIGINT and SIGTERM end `run`
   std::function<void(std::string_view line)> log = [](std::string_view /*line*/) {};
@@ -36,7 +34,8 @@ struct HostStatistics {
 };
 
 /// Lets an emulated device live on the wall clock and talk to clients on real links. Bytes reach it
-/// at the virtual time of their arrival, and leave when virtual time has come.
+/// at the virtual time of their arrival, and leave when virtual time has come. When this process
+/// had no time for that, the device is told so (`HostedDevice::overlook`).
 ///
 /// The answers of a stream go to the link that sent last. A server has each connection with its
 /// segments, half-close and reset; while it does not listen, connections are refused; what it does

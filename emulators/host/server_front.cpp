@@ -21,7 +21,7 @@ class ServerFront final : public Front {
   [[nodiscard]] Instant begin() override { return wait_until_listening(server_); }
 
   [[nodiscard]] Outcome<void> listen(const HostOptions& options) override {
-    if (!options.tcp || options.pty || options.line) {
+    if (!options.tcp || options.pty) {
       return problem(ErrorCode::kBadValue, "host",
                      "a server has connections: it is on a TCP port and nowhere else");
     }

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 namespace armjig {
 namespace {
@@ -100,49 +99,6 @@ void take_answer(const SmbusFrame& frame, std::uint32_t size, i2c_smbus_data& da
   }
 }
 
-/// The bus of one transaction, overheard.
-class OverheardBus final : public BusPort {
- public:
-  OverheardBus(BusPort& port, const BusListener& listener) : port_{port}, listener_{listener} {}
-
-  Result<Ack> start(BusAddress address, Access access) override {
-    tell();
-    const auto answer = port_.start(address, access);
-    const auto direction = access == Access::kRead ? 1U : 0U;
-    if (answer == Ack::kAck) {
-      message_.push_back(static_cast<std::byte>(unsigned{address.value} << 1U | direction));
-    }
-    return answer;
-  }
-  Result<Ack> write(std::byte byte) override {
-    const auto answer = port_.write(byte);
-    if (answer == Ack::kAck) message_.push_back(byte);
-    return answer;
-  }
-  Result<std::byte> read(Ack reply) override {
-    const auto byte = port_.read(reply);
-    if (byte) message_.push_back(*byte);
-    return byte;
-  }
-  Result<void> stop() override {
-    const auto stopped = port_.stop();
-    tell();
-    return stopped;
-  }
-  void wait_until(Instant time) override { port_.wait_until(time); }
-  [[nodiscard]] Instant now() const override { return port_.now(); }
-
- private:
-  void tell() {
-    if (!message_.empty()) listener_(now(), message_);
-    message_.clear();
-  }
-
-  BusPort& port_;
-  const BusListener& listener_;
-  std::vector<std::byte> message_;
-};
-
 int error_of(const Result<Transfer>& result) {
   if (!result) return result.error().code == ErrorCode::kTimedOut ? ETIMEDOUT : EAGAIN;
   switch (*result) {
@@ -159,23 +115,19 @@ int error_of(const Result<Transfer>& result) {
 }  // namespace
 
 Outcome<std::unique_ptr<I2cAdapter>> I2cAdapter::open(std::unique_ptr<HostedBus> bus,
-                                                      BusListener listener, HostOptions options) {
+                                                      HostOptions options) {
   auto host = Host::open(std::move(bus), std::move(options));
   if (!host) return tl::unexpected{host.error()};
-  return std::unique_ptr<I2cAdapter>{new I2cAdapter{*std::move(host), std::move(listener)}};
+  return std::unique_ptr<I2cAdapter>{new I2cAdapter{*std::move(host)}};
 }
 
-I2cAdapter::I2cAdapter(Host host, BusListener listener)
-    : host_{std::move(host)}, listener_{std::move(listener)}, thread_{[this] { host_.run(); }} {}
+I2cAdapter::I2cAdapter(Host host) : host_{std::move(host)}, thread_{[this] { host_.run(); }} {}
 
 I2cAdapter::~I2cAdapter() { host_.stop(); }
 
 int I2cAdapter::transfer(std::span<const BusMessage> messages) {
   int error = 0;
-  host_.with_bus([&](BusPort& bus) {
-    error = error_of(listener_ ? OverheardBus{bus, listener_}.transfer(messages)
-                               : bus.transfer(messages));
-  });
+  host_.with_bus([&](BusPort& bus) { error = error_of(bus.transfer(messages)); });
   return error;
 }
 

@@ -4,23 +4,15 @@
 #include <linux/i2c.h>
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <thread>
 
 #include "emulators/host/host.hpp"
 #include "emulators/memory/hosted.hpp"
-#include "harness/core/bytes.hpp"
-#include "harness/core/time.hpp"
 #include "harness/link/bus_port.hpp"
 
 namespace armjig {
-
-/// Is told of every message that somebody on a bus acknowledged, when it is over: the byte with
-/// address and direction, then the data bytes that were acknowledged. Bytes until it returns. One
-/// thread calls it, not that of the one who listens; times never decrease.
-using BusListener = std::function<void(Instant time, Bytes message)>;
 
 /// An emulated bus as the kernel would show it: transactions and SMBus commands in, error numbers
 /// out. It lives on the wall clock (`Host`), in a thread of its own; a transaction takes as long as
@@ -33,9 +25,8 @@ class I2cAdapter {
       I2C_FUNC_SMBUS_WORD_DATA | I2C_FUNC_SMBUS_PROC_CALL | I2C_FUNC_SMBUS_WRITE_BLOCK_DATA |
       I2C_FUNC_SMBUS_I2C_BLOCK;
 
-  /// An empty listener hears nothing. Problems: those of `Host::open`.
+  /// Problems: those of `Host::open`.
   [[nodiscard]] static Outcome<std::unique_ptr<I2cAdapter>> open(std::unique_ptr<HostedBus> bus,
-                                                                 BusListener listener = {},
                                                                  HostOptions options = {});
   ~I2cAdapter();
 
@@ -52,10 +43,9 @@ class I2cAdapter {
                           std::uint32_t size, i2c_smbus_data& data);
 
  private:
-  I2cAdapter(Host host, BusListener listener);
+  explicit I2cAdapter(Host host);
 
   Host host_;
-  BusListener listener_;
   std::jthread thread_;  ///< lets the devices live, also while nobody talks to them
 };
 

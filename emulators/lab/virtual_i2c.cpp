@@ -299,8 +299,8 @@ class VirtualI2c::Bed {
 };
 
 Outcome<VirtualI2c> VirtualI2c::open(std::unique_ptr<HostedBus> bus, int number,
-                                     BusListener listener, HostOptions options) {
-  auto adapter = I2cAdapter::open(std::move(bus), std::move(listener), std::move(options));
+                                     HostOptions options) {
+  auto adapter = I2cAdapter::open(std::move(bus), std::move(options));
   if (!adapter) return tl::unexpected{adapter.error()};
   auto bed = std::make_unique<Bed>(*std::move(adapter), number);
   if (const auto plugged = bed->plug_in(); !plugged) return tl::unexpected{plugged.error()};

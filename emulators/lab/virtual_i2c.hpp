@@ -18,7 +18,6 @@ class VirtualI2c {
  public:
   /// Problems: those of `I2cAdapter::open`, and `kSystem` if the test bed cannot be made.
   [[nodiscard]] static Outcome<VirtualI2c> open(std::unique_ptr<HostedBus> bus, int number,
-                                                BusListener listener = {},
                                                 HostOptions options = {});
   VirtualI2c(VirtualI2c&&) noexcept;
   VirtualI2c& operator=(VirtualI2c&&) noexcept;

@@ -33,6 +33,8 @@ class HostedDevice {
   [[nodiscard]] virtual std::optional<Instant> next_event() const = 0;
   /// Does beside the device what no client can. False: nothing has that name and takes the value.
   [[nodiscard]] virtual bool set_input(Instant time, std::string_view name, std::int64_t value) = 0;
+  /// Whoever hosts it did not look between these times: what clients did then it gets now.
+  virtual void overlook(Instant /*from*/, Instant /*to*/) {}
   /// What `set_input` knows, for people.
   [[nodiscard]] virtual std::span<const DeviceInput> inputs() const { return {}; }
   /// What the device has written to its log since the last call.

@@ -95,6 +95,7 @@ class OnLine final : public HostedStream {
     take_sent();
     return is_taken;
   }
+  void overlook(Instant from, Instant to) override { device_->overlook(from, to); }
   [[nodiscard]] std::span<const DeviceInput> inputs() const override { return device_->inputs(); }
   [[nodiscard]] std::vector<std::string> take_log() override { return device_->take_log(); }
   [[nodiscard]] std::unique_ptr<HostedStream> clone() const override {

@@ -16,6 +16,7 @@
 
 #include "emulators/demo/demo.hpp"
 #include "emulators/host/outbox.hpp"
+#include "emulators/memory/serial_line.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/link/real_streams.hpp"
@@ -135,8 +136,8 @@ TEST(Host, LetsBytesTakeTheirTimeOnALine) {
   // At 1200 baud, six characters of 11 bits take 55 ms; the demo device thinks for 1 ms.
   HostOptions options;
   options.pty.emplace();
-  options.line = CharacterRate{.baud = 1200, .bits = 11};
-  auto host = std::move(Host::open(demo_device(), options).value());
+  auto host = std::move(
+      Host::open(put_on_line(demo_device(), {.baud = 1200, .bits = 11}), options).value());
   std::thread thread{[&host] { host.run(); }};
   {
     const auto port = open_or_die(open_pty(host.targets()[0].substr(4)));
@@ -151,8 +152,7 @@ TEST(Host, LetsBytesTakeTheirTimeOnALine) {
 TEST(Host, LeavesToClientsWhatALineCannotTakeYet) {
   HostOptions options;
   options.pty.emplace();
-  options.line = CharacterRate{.baud = 1200};
-  auto host = std::move(Host::open(demo_device(), options).value());
+  auto host = std::move(Host::open(put_on_line(demo_device(), {.baud = 1200}), options).value());
   std::thread thread{[&host] { host.run(); }};
   {
     const auto port = open_or_die(open_pty(host.targets()[0].substr(4)));

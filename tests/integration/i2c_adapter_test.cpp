@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "conformance/program_check.hpp"
 #include "emulators/morap/options.hpp"
 #include "harness/core/hex.hpp"
 
@@ -29,18 +31,38 @@ i2c::Bus bus() {
       {.nodes = {{}}, .thermometers = {i2c::Thermometer{kThermometer.value}}});
 }
 
-/// What an adapter tells its listener.
+std::vector<std::string> heard;
+std::vector<Instant> times;
+
+/// A judge that writes down what it is shown.
+class Listener final : public ProgramChecker {
+ public:
+  explicit Listener(const LinkNoise& /*noise*/) {}
+
+  void to_device(Instant time, Bytes message) override {
+    heard.push_back(to_hex(message));
+    times.push_back(time);
+  }
+  void from_device(Instant time, Bytes message) override { to_device(time, message); }
+  void finish(Instant /*time*/) override {}
+  [[nodiscard]] std::size_t messages() const noexcept override { return heard.size(); }
+};
+
+/// What is heard of an adapter's bus.
 class I2cAdapterTest : public testing::Test {
  protected:
+  I2cAdapterTest() {
+    heard.clear();
+    times.clear();
+  }
+
   int transfer(const std::vector<BusMessage>& messages) { return adapter->transfer(messages); }
 
-  std::vector<std::string> heard;
-  std::vector<Instant> times;
-  std::unique_ptr<I2cAdapter> adapter =
-      I2cAdapter::open(make_hosted(bus()), [this](Instant time, Bytes message) {
-        heard.push_back(to_hex(message));
-        times.push_back(time);
-      }).value();
+  ProgramCheck check{
+      {"test", []() noexcept { return std::span<const Requirement>{}; }, make_checker<Listener>},
+      {},
+      [](const Offence& /*offence*/) {}};
+  std::unique_ptr<I2cAdapter> adapter = I2cAdapter::open(check.watch(make_hosted(bus()))).value();
 };
 
 TEST_F(I2cAdapterTest, TellsWhatWasAcknowledgedOfEachMessage) {

@@ -12,17 +12,23 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 import tty
 
 
-def idle(gripper_id):
-    frame = bytearray(56)
-    frame[:4] = b"\xff\xff\xff\x34"
-    frame[40] = 255
-    frame[52] = gripper_id
-    frame[53:] = b"\xe4\x01\x02"
-    return bytes(frame)
+IDLE, JOG = 255, 123
+ANSWER_SIZE = 60
+
+
+def frame(gripper_id, command=IDLE, speed_j1=0):
+    bytes_of = bytearray(56)
+    bytes_of[:4] = b"\xff\xff\xff\x34"
+    bytes_of[22:25] = speed_j1.to_bytes(3, "big", signed=True)
+    bytes_of[40] = command
+    bytes_of[52] = gripper_id
+    bytes_of[53:] = b"\xe4\x01\x02"
+    return bytes(bytes_of)
 
 
 def talk(path, gripper_id, seconds=1.0):
@@ -31,7 +37,7 @@ def talk(path, gripper_id, seconds=1.0):
     end = time.monotonic() + seconds
     due = time.monotonic()
     while due < end:
-        os.write(port, idle(gripper_id))
+        os.write(port, frame(gripper_id))
         due += 0.01
         time.sleep(max(0.0, due - time.monotonic()))
         while select.select([port], [], [], 0)[0]:
@@ -116,6 +122,74 @@ def check_parol6(armjig):
     assert code == (1 if failed else 0), code
 
 
+def check_stopped_emulator(armjig):
+    """A program that waits for each answer, while the emulator is stopped for a while."""
+    emulator = subprocess.Popen([armjig, "emulate", "parol6", "--check", "--json"],
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    port = os.open(json.loads(emulator.stdout.readline())["listening"][0].removeprefix("pty:"),
+                   os.O_RDWR | os.O_NOCTTY)
+    tty.setraw(port)
+
+    answered = time.monotonic()
+    own_pauses = []
+
+    def ask(command, speed=0):
+        nonlocal answered
+        own_pauses.append(time.monotonic() - answered)
+        os.write(port, frame(0, command, speed))
+        left = ANSWER_SIZE
+        while left > 0:
+            left -= len(os.read(port, left))
+        answered = time.monotonic()
+        time.sleep(0.01)
+
+    for _ in range(20):
+        ask(IDLE)
+    for i in range(60):
+        ask(JOG, 500)
+        if i == 30:
+            threading.Thread(target=stop_for, args=(emulator, 0.6)).start()
+            time.sleep(0.1)
+            answered = time.monotonic()
+    for _ in range(20):
+        ask(IDLE)
+    os.close(port)
+    emulator.send_signal(signal.SIGINT)
+    out, err = emulator.communicate(timeout=30)
+    report = json.loads(out)
+    musts = {name for name in failures(report) if level_of(report, name) == "must"}
+    assert not musts or max(own_pauses) > 0.05, err  # this program may have had no time itself
+    assert float(report["facts"]["overlooked"].split()[0]) >= 0.5, report["facts"]
+    rows = {row["name"]: row for row in report["rows"]}
+    gap = rows["parol6.host.gap-in-motion"]
+    assert gap["verdict"] in ("inconclusive", "pass"), gap
+    assert rows["parol6.host.go-to-range"]["verdict"] == "skipped", rows
+    assert rows["parol6.host.jog-pace"]["verdict"] == "pass", rows
+
+
+def stop_for(process, seconds):
+    process.send_signal(signal.SIGSTOP)
+    time.sleep(seconds)
+    process.send_signal(signal.SIGCONT)
+
+
+def level_of(report, name):
+    return next(row["level"] for row in report["rows"] if row["name"] == name)
+
+
+def check_our_own(armjig):
+    """What our programs do is good, when they open a port as when they use it."""
+    console = "printf 'status\nwait 0.5\nquit\n' |"
+    for program in [f"{armjig} watch parol6 --seconds 1.5 --target",
+                    f"{console} {armjig} console parol6 --target"]:
+        code, report, err = check(
+            armjig, ["parol6"],
+            lambda place: subprocess.run(f"{program} {place}", shell=True, check=True, timeout=60,
+                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+        failed = failures(report)
+        assert failed <= {"parol6.host.rate-slow", "parol6.host.jitter"}, (failed, err)
+
+
 def check_kinovazed(armjig):
     server = ["kinovazed", "--tcp", "0", "--speed", "5"]
     for profile in ["firmware", "documented"]:
@@ -133,6 +207,8 @@ def check_kinovazed(armjig):
 
 def main(armjig):
     check_parol6(armjig)
+    check_stopped_emulator(armjig)
+    check_our_own(armjig)
     check_kinovazed(armjig)
     print("ok")
 

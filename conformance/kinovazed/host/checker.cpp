@@ -27,9 +27,7 @@ class HostChecker final : public ProgramChecker {
   }
 
   void on_connection(const ConnectionEvent& event) override {
-    now_ = event.time;
-    judge_crowd();
-    conduct_.tick(now_, complain_);
+    wait_until(event.time);
     if (event.kind == ConnectionEvent::Kind::kBegun) return admit(event.connection);
     const auto client = clients_.find(event.connection);
     if (client == clients_.end()) return;  // it has left, and the server does not know yet
@@ -47,11 +45,12 @@ class HostChecker final : public ProgramChecker {
     }
   }
 
-  void finish(Instant time) override {
+  void wait_until(Instant time) override {
     now_ = time;
     judge_crowd();
     conduct_.tick(now_, complain_);
   }
+  void finish(Instant time) override { wait_until(time); }
 
   [[nodiscard]] std::size_t messages() const noexcept override { return messages_; }
 
@@ -78,8 +77,8 @@ class HostChecker final : public ProgramChecker {
   /// One that has just left may be seen behind the next one that comes.
   void judge_crowd() {
     if (!crowded_since_ || now_ - *crowded_since_ <= noise_) return;
-    crowded_since_.reset();
-    complain_("kinovazed.host.one-connection", "a client came, and another one was there");
+    complain_("kinovazed.host.one-connection", "a client came, and another one was there",
+              {.since = *std::exchange(crowded_since_, std::nullopt)});
   }
 
   void hear_client(Client& client, bool is_served, Bytes bytes) {

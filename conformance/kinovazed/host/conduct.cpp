@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "conformance/kinovazed/host/occasions.hpp"
 #include "harness/drive/kinovazed/drive.hpp"
 
 namespace armjig::kinovazed::programs {
@@ -112,8 +113,10 @@ void Conduct::enter(Instant time, std::optional<State> state) noexcept {
 
 bool Conduct::is_silent(Instant time) const noexcept { return time - heard_ > kSilence + noise_; }
 
-void Conduct::command(Instant time, const Command& command, const Complain& complain) {
+void Conduct::command(Instant time, const Command& command, const Complain& complain_now) {
+  const auto complain = complain_now.resting_on({.since = time});
   give_up_waiting(time);
+  note_occasions(time, command, complain);
   const bool is_estop = command.verb == Verb::kEStop;
   if (!is_estop && is_silent(time) && !std::exchange(is_silence_told_, true)) {
     complain("kinovazed.host.silent-server",
@@ -128,6 +131,22 @@ void Conduct::command(Instant time, const Command& command, const Complain& comp
   judge_joystick(time, command, complain);
   judge_objective(command, complain);
   if (drive::is_answered(command.verb)) requests_.push_back({.command = command, .sent = time});
+}
+
+void Conduct::note_occasions(Instant time, const Command& command, const Complain& complain) const {
+  const auto note = [&complain](bool is_one, std::string_view what) {
+    if (is_one) complain.occasion(what);
+  };
+  const auto verb = command.verb;
+  const bool has_objective = verb == Verb::kRunObjective || verb == Verb::kSetActiveObjective;
+  note(is_silent(time), occasion::kSilence);
+  note(verb == Verb::kEStop, occasion::kEstop);
+  note(verb == Verb::kMoveJoystick, occasion::kJoystick);
+  note(verb == Verb::kSetJoystickMode, occasion::kMode);
+  note(is_steering_mode(command) && mode_set_, occasion::kTwoModes);
+  note(has_objective, occasion::kObjective);
+  note(verb == Verb::kSetActiveObjective, occasion::kActiveObjective);
+  note(verb == Verb::kGetObjectivePosition, occasion::kObjectivePosition);
 }
 
 /// Whether the documents let it come before the answers that are still to come.
@@ -173,7 +192,8 @@ void Conduct::judge_joystick(Instant time, const Command& command, const Complai
       if (span + noise_ < kMovesWindow) {
         moves_.clear();
         complain("kinovazed.host.stick-pace",
-                 fmt::format("{} moves came in {:.0f} ms", kMostMoves + 1, milliseconds(span)));
+                 fmt::format("{} moves came in {:.0f} ms", kMostMoves + 1, milliseconds(span)),
+                 {.since = time - span});
       }
     }
   }
@@ -184,7 +204,8 @@ void Conduct::judge_joystick(Instant time, const Command& command, const Complai
   if (can_be_taken && mode_set_ && time - *mode_set_ + noise_ < kModePause) {
     complain("kinovazed.host.mode-pause",
              fmt::format("{} came {:.0f} ms after another mode", to_string(command.mode),
-                         milliseconds(time - *mode_set_)));
+                         milliseconds(time - *mode_set_)),
+             {.since = *mode_set_});
   }
   mode_set_ = time;
 }
@@ -202,7 +223,10 @@ void Conduct::judge_objective(const Command& command, const Complain& complain) 
   }
 }
 
-void Conduct::leave(Instant time, const Complain& complain) {
+void Conduct::leave(Instant time, const Complain& complain_now) {
+  const auto complain = complain_now.resting_on({.since = time});
+  complain.occasion(occasion::kLeft);
+  if (!moves_.empty()) complain.occasion(occasion::kJoystickLeft);
   give_up_waiting(time);
   if (is_silent(time)) return;
   if (!requests_.empty()) {
@@ -218,10 +242,14 @@ void Conduct::leave(Instant time, const Complain& complain) {
 }
 
 void Conduct::tick(Instant time, const Complain& complain) {
-  if (state_ != kRunningSequence || time - entered_ <= kLongestObjective) return;
-  if (std::exchange(is_patience_told_, true)) return;
-  complain("kinovazed.host.objective-patience",
-           fmt::format("one runs for {:.0f} ms", milliseconds(time - entered_)));
+  if (state_) complain.occasion(requirement_of(*state_, Verb::kUnfold, is_stop_unasked_));
+  if (state_ != kRunningSequence || is_patience_told_) return;
+  complain.occasion("kinovazed.host.objective-patience");
+  const auto runs_for = time - entered_;
+  if (runs_for <= kLongestObjective) return;
+  is_patience_told_ = complain("kinovazed.host.objective-patience",
+                               fmt::format("one runs for {:.0f} ms", milliseconds(runs_for)),
+                               {.since = entered_, .beyond = runs_for - kLongestObjective});
 }
 
 /// What has an event of its own a documented server accepts without a word.

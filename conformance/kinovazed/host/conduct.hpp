@@ -47,6 +47,7 @@ class Conduct {
   [[nodiscard]] bool may_overtake(const Command& command) const noexcept;
   [[nodiscard]] bool is_allowed(Instant time, Verb verb) const noexcept;
 
+  void note_occasions(Instant time, const Command& command, const Complain& complain) const;
   void judge_turn(const Command& command, const Complain& complain) const;
   void judge_state(Instant time, const Command& command, const Complain& complain) const;
   void judge_joystick(Instant time, const Command& command, const Complain& complain);

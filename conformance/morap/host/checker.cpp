@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "conformance/morap/host/occasions.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/wire/morap/message.hpp"
 #include "harness/wire/morap/pen.hpp"
@@ -59,6 +60,7 @@ class HostChecker final : public ProgramChecker {
     if (address > node_address(kLastDocumentedNode)) {
       complain("addresses", fmt::format("address {:02X}", address));
     }
+    complain_.occasion(occasion::kNode);
     judge_command(nodes_[address], data);
   }
 
@@ -66,9 +68,14 @@ class HostChecker final : public ProgramChecker {
     now_ = time;
     if (transaction.empty()) return;
     const auto address = address_of(transaction);
-    if (address == pen::kAddress) return complain("pen-read", "a read of the pen");
+    if (address == pen::kAddress) {
+      complain_.occasion(occasion::kPen);
+      return complain("pen-read", "a read of the pen");
+    }
     const auto node = nodes_.find(address);
-    if (node != nodes_.end()) judge_read(node->second, transaction.subspan(1));
+    if (node == nodes_.end()) return;
+    complain_.occasion(occasion::kRead);
+    judge_read(node->second, transaction.subspan(1));
   }
 
   void finish(Instant time) override {
@@ -89,12 +96,15 @@ class HostChecker final : public ProgramChecker {
   void complain(std::string_view name, std::string what) {
     for (const auto& requirement : host_requirements()) {
       if (requirement.id.substr(kPrefix.size()) != name) continue;
-      return add(now_, requirement.id, std::move(what));
+      return complain_(requirement.id, std::move(what));
     }
   }
 
   void judge_command(Told& told, Bytes data) {
     const CommandId id{std::to_integer<std::uint8_t>(data[0])};
+    if (has_number(id)) complain_.occasion(occasion::kNumber);
+    if (id == kProgram) complain_.occasion(occasion::kSet);
+    if (id == kTune) complain_.occasion(occasion::kTuning);
     const auto decoded = decode_command(data);
     if (const auto* fault = std::get_if<CommandFault>(&decoded)) return judge_fault(*fault, data);
     const auto& [command, size] = std::get<DecodedCommand>(decoded);
@@ -174,6 +184,7 @@ class HostChecker final : public ProgramChecker {
 
   void judge_order(Told& told, CommandId id) {
     if (is_reference(id)) {
+      complain_.occasion(occasion::kReference);
       if (!told.is_calibrated) {
         complain("calibrates-first", fmt::format("reference {}", static_cast<int>(id)));
       }
@@ -183,6 +194,7 @@ class HostChecker final : public ProgramChecker {
       told.is_enabled = true;
     }
     if (is_calibration(id)) {
+      complain_.occasion(occasion::kCalibration);
       if (told.is_calibrated && told.is_enabled) {
         complain("calibrates-disabled", fmt::format("identifier {}", static_cast<int>(id)));
       }
@@ -194,6 +206,8 @@ class HostChecker final : public ProgramChecker {
   }
 
   void judge_pause(Told& told, CommandId id) {
+    complain_.occasion(occasion::kProgram);
+    if (told.programmed) complain_.occasion(occasion::kTwoPrograms);
     if (told.programmed && now_ - *told.programmed + noise_ < kProgramPause) {
       complain("program-pause", fmt::format("{:.1f} ms", milliseconds(now_ - *told.programmed)));
     }
@@ -222,6 +236,8 @@ class HostChecker final : public ProgramChecker {
   }
 
   void judge_pen(Bytes data) {
+    complain_.occasion(occasion::kPen);
+    if (pen_) complain_.occasion(occasion::kTwoPens);
     const pen::CommandId id{std::to_integer<std::uint8_t>(data[0])};
     const bool has_position = id == pen::CommandId::kSetPosition;
     if (!has_position && id != pen::CommandId::kDeploy && id != pen::CommandId::kRetract) {

@@ -17,8 +17,13 @@ class HostChecker final : public ProgramChecker {
       : framing_{complain_, noise.most}, pace_{noise.most}, conduct_{noise.most} {}
 
   void to_device(Instant time, Bytes bytes) override {
-    now_ = time;
+    wait_until(time);
     framing_.feed(time, bytes, [this](const CommandFrame& frame) { judge(frame); });
+  }
+
+  void wait_until(Instant time) override {
+    now_ = time;
+    conduct_.wait_until(time, complain_);
   }
 
   void from_device(Instant time, Bytes bytes) override {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "conformance/parol6/host/occasions.hpp"
 #include "harness/wire/parol6/joint_bounds.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
@@ -17,6 +18,8 @@ using namespace std::chrono_literals;
 /// In which a program has to see that the emergency stop is pressed, and a joint at its bound.
 constexpr Duration kReaction = 100ms;
 constexpr Duration kLongestGap = 100ms;
+/// A host that is silent for so long has gone.
+constexpr Duration kGone = 1s;
 /// Frames that come together after that much for each of them were held up by the link.
 constexpr Duration kShortPeriod = 8ms;
 constexpr Duration kLongestHome = 1s;
@@ -79,7 +82,9 @@ bool Conduct::has_joints_move() const noexcept {
   }
 }
 
-void Conduct::command(Instant time, const CommandFrame& frame, const Complain& complain) {
+void Conduct::command(Instant time, const CommandFrame& frame, const Complain& complain_now) {
+  const auto complain = complain_now.resting_on({.since = time});
+  note_occasions(frame, complain);
   if (latched_) judge_order(time, frame, complain);
   judge_permission(frame, complain);
   judge_estop(time, frame, complain);
@@ -87,6 +92,23 @@ void Conduct::command(Instant time, const CommandFrame& frame, const Complain& c
   judge_motion(time, frame, complain);
   latched_ = frame;
   latched_at_ = time;
+  has_fallen_silent_ = false;
+}
+
+void Conduct::note_occasions(const CommandFrame& frame, const Complain& complain) const {
+  const auto note = [&complain](bool is_one, std::string_view what) {
+    if (is_one) complain.occasion(what);
+  };
+  const bool is_go_to = frame.command == Command::kGoTo;
+  const bool is_jog = frame.command == Command::kJog;
+  note(frame.command != Command::kIdle, occasion::kCommand);
+  note(frame.command == Command::kHome, occasion::kHome);
+  note(moves(frame.command), occasion::kMove);
+  note(is_go_to, occasion::kGoTo);
+  note(is_jog, occasion::kJog);
+  note(is_go_to && is_arm_homed(), occasion::kHomedGoTo);
+  note(is_jog && is_arm_homed(), occasion::kHomedJog);
+  note(is_estop_pressed(), occasion::kEstop);
 }
 
 /// Lets the frame before act, if it had the time, and judges what came between.
@@ -101,6 +123,7 @@ void Conduct::judge_order(Instant time, const CommandFrame& frame, const Complai
   ++together_;
   const bool is_lost = latched_->command != frame.command && latched_->command != Command::kIdle;
   const bool may_be_late = noise_ > Duration::zero() && gap_before_ > together_ * kShortPeriod;
+  if (may_be_late) act(latched_at_, *latched_);  // as the program means it
   if (!is_lost || may_be_late) return;
   complain("parol6.host.overwritten", fmt::format("code {} was followed at once by code {}",
                                                   code(latched_->command), code(frame.command)));
@@ -121,20 +144,35 @@ void Conduct::act(Instant time, const CommandFrame& frame) {
   }
 }
 
-void Conduct::judge_silence(Instant time, const Complain& complain) const {
+void Conduct::judge_silence(Instant time, const Complain& complain) {
+  if (!has_joints_move()) return;
+  complain.occasion(occasion::kMotion);
   const auto gap = time - latched_at_;
-  if (gap <= kLongestGap || !has_joints_move()) return;
+  if (gap <= kLongestGap || has_fallen_silent_) return;
   complain("parol6.host.gap-in-motion",
            fmt::format("{:.0f} ms passed without a frame after code {}", milliseconds(gap),
-                       code(latched_->command)));
+                       code(latched_->command)),
+           {.since = latched_at_, .beyond = gap - kLongestGap});
+}
+
+void Conduct::wait_until(Instant time, const Complain& complain) {
+  call_silent(time, kGone, complain);
 }
 
 void Conduct::finish(Instant time, const Complain& complain) {
-  if (!latched_) return;
-  if (time > latched_at_) act(latched_at_, *latched_);
-  if (time - latched_at_ <= kLongestGap || !has_joints_move()) return;
-  complain("parol6.host.silent-in-motion",
-           fmt::format("the last frame had code {}", code(latched_->command)));
+  call_silent(time, kLongestGap, complain);
+}
+
+void Conduct::call_silent(Instant time, Duration longest, const Complain& complain) {
+  const auto silence = time - latched_at_;
+  if (!latched_ || has_fallen_silent_ || silence <= longest) return;
+  act(latched_at_, *latched_);
+  if (!has_joints_move()) return;
+  complain.occasion(occasion::kMotion);
+  has_fallen_silent_ = complain("parol6.host.silent-in-motion",
+                                fmt::format("no frame came for {:.0f} ms after code {}",
+                                            milliseconds(silence), code(latched_->command)),
+                                {.since = latched_at_, .beyond = silence - longest});
 }
 
 void Conduct::judge_permission(const CommandFrame& frame, const Complain& complain) const {
@@ -163,10 +201,11 @@ void Conduct::judge_estop(Instant time, const CommandFrame& frame, const Complai
                                                     "pressed",
                                                     code(frame.command)));
   } else if (!has_disabled_ && !has_ignored_stop_ && time - *pressed_since_ > kReaction) {
-    has_ignored_stop_ = true;
-    complain("parol6.host.estop-disables",
-             fmt::format("no disable came in {:.0f} ms, but code {}",
-                         milliseconds(time - *pressed_since_), code(frame.command)));
+    has_ignored_stop_ =
+        complain("parol6.host.estop-disables",
+                 fmt::format("no disable came in {:.0f} ms, but code {}",
+                             milliseconds(time - *pressed_since_), code(frame.command)),
+                 {.since = *pressed_since_, .beyond = time - *pressed_since_ - kReaction});
   }
 }
 
@@ -176,7 +215,8 @@ void Conduct::judge_homing(Instant time, const CommandFrame& frame, const Compla
   } else if (!home_since_) {
     home_since_ = time;
   } else if (time - *home_since_ > kLongestHome) {
-    complain("parol6.host.home-held", "home was held for more than a second");
+    complain("parol6.host.home-held", "home was held for more than a second",
+             {.since = *home_since_, .beyond = time - *home_since_ - kLongestHome});
   }
   const bool may_come = frame.command == Command::kIdle || frame.command == Command::kHome ||
                         frame.command == Command::kDisable;
@@ -253,7 +293,8 @@ void Conduct::judge_held(Instant time, const CommandFrame& frame, const Complain
   if (is_go_to && has_speed(frame) && held_->has_moved && held_for > kRest) {
     held_->is_judged = true;
     complain("parol6.host.go-to-rest",
-             fmt::format("a go-to was held for {:.0f} ms with a speed", milliseconds(held_for)));
+             fmt::format("a go-to was held for {:.0f} ms with a speed", milliseconds(held_for)),
+             {.since = held_->since});
   } else if (held_for > kEffect && !held_->has_moved) {
     const bool wants_motion = is_go_to ? frame.position != telemetry_->position
                                        : std::ranges::any_of(frame.speed, [](StepsPerSecond speed) {
@@ -263,7 +304,8 @@ void Conduct::judge_held(Instant time, const CommandFrame& frame, const Complain
     held_->is_judged = true;
     complain("parol6.host.no-effect",
              fmt::format("code {} was held for {:.0f} ms and nothing moved", code(frame.command),
-                         milliseconds(held_for)));
+                         milliseconds(held_for)),
+             {.since = held_->since});
   }
 }
 

@@ -21,6 +21,8 @@ class Conduct {
   void command(Instant time, const CommandFrame& frame, const Complain& complain);
   /// What the board answered.
   void telemetry(Instant time, const TelemetryFrame& frame);
+  /// No frame has come until now.
+  void wait_until(Instant time, const Complain& complain);
   void finish(Instant time, const Complain& complain);
 
   [[nodiscard]] const std::optional<TelemetryFrame>& last_telemetry() const noexcept {
@@ -41,7 +43,9 @@ class Conduct {
 
   void act(Instant time, const CommandFrame& frame);
   void judge_order(Instant time, const CommandFrame& frame, const Complain& complain);
-  void judge_silence(Instant time, const Complain& complain) const;
+  void judge_silence(Instant time, const Complain& complain);
+  void call_silent(Instant time, Duration longest, const Complain& complain);
+  void note_occasions(const CommandFrame& frame, const Complain& complain) const;
   void judge_permission(const CommandFrame& frame, const Complain& complain) const;
   void judge_estop(Instant time, const CommandFrame& frame, const Complain& complain);
   void judge_homing(Instant time, const CommandFrame& frame, const Complain& complain);
@@ -57,8 +61,9 @@ class Conduct {
   std::optional<TelemetryFrame> telemetry_;
   std::optional<CommandFrame> latched_;  ///< the last frame
   Instant latched_at_{};
-  Duration gap_before_{};  ///< in front of the frames that came at that time
-  int together_ = 1;       ///< how many did
+  Duration gap_before_{};           ///< in front of the frames that came at that time
+  int together_ = 1;                ///< how many did
+  bool has_fallen_silent_ = false;  ///< behind the last frame, and that was said
 
   // As far as the frames before the last one have acted.
   bool is_enabled_ = true;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "conformance/parol6/host/occasions.hpp"
 #include "harness/wire/parol6/fields.hpp"
 
 namespace armjig::parol6::programs {
@@ -86,6 +87,8 @@ void GripperConduct::judge(const CommandFrame& frame, const std::optional<Grippe
   const auto& wanted = frame.gripper;
   const auto set_point = without_mode(wanted);
   const bool is_one_shot = wanted.mode != kMove && wanted.mode <= kLastMode;
+  if (is_one_shot) complain.occasion(occasion::kGripperMode);
+  if (wanted.mode == kLastMode) complain.occasion(occasion::kGripperClear);
   if (is_one_shot && before_ && before_->mode == wanted.mode) {
     complain("parol6.host.gripper-mode-once",
              fmt::format("mode {} stood in one frame after the other", wanted.mode));
@@ -112,6 +115,7 @@ void GripperConduct::judge_move(const GripperSetPoint& wanted,
                                 const std::optional<GripperReport>& report,
                                 const Complain& complain) const {
   if (!before_ || before_->position == wanted.position) return;
+  complain.occasion(occasion::kGripperMove);
   constexpr auto kGo = gripper_command::kActivate | gripper_command::kGoTo;
   if ((wanted.command & kGo) != kGo) {
     complain("parol6.host.gripper-activated",

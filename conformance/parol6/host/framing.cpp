@@ -13,6 +13,9 @@ namespace armjig::parol6::programs {
 namespace {
 
 constexpr Duration kPeriod = std::chrono::milliseconds{10};
+/// So many bytes end whatever a receiver is in (parol6.receive.length-zero).
+constexpr std::size_t kFlushSize = 256;
+constexpr std::size_t kStoreSize = 255;
 
 std::size_t start_in(Bytes bytes) noexcept {
   const auto at = std::search_n(bytes.begin(), bytes.end(), kStartSize, kStartByte);
@@ -41,6 +44,7 @@ void Framing::feed(Instant time, Bytes bytes, const OnFrame& on_frame) {
     if (message.fault.empty()) {
       judge_duration(time);
       excused_ = 0;
+      has_flushed_ = false;
       on_frame(decode_command(body_of(Bytes{message.raw}.first<kCommandFrameSize>())));
     } else {
       judge_noise(message.raw, i + 1 < messages_.size() && messages_[i + 1].fault.empty());
@@ -54,7 +58,8 @@ void Framing::judge_duration(Instant time) {
   if (duration <= most_) return;
   complain_("parol6.host.frame-prompt",
             fmt::format("a frame took {:.1f} ms to come",
-                        std::chrono::duration<double, std::milli>{duration}.count()));
+                        std::chrono::duration<double, std::milli>{duration}.count()),
+            {.since = begun_, .beyond = duration - most_});
 }
 
 /// What a strict receiver passes over: perhaps stray bytes, then perhaps a broken frame.
@@ -84,11 +89,24 @@ void Framing::judge_noise(Bytes noise, bool is_before_frame) {
   }
 }
 
+/// Many equal bytes, or what clears the store behind them: a whole one that is not accepted.
+bool Framing::is_reset(Bytes stray) {
+  const auto are = [](Bytes bytes, std::byte value) {
+    return std::ranges::all_of(bytes, [value](std::byte byte) { return byte == value; });
+  };
+  if (has_flushed_ && stray.size() == kHeaderSize + kStoreSize) {
+    return are(stray.first(kHeaderSize), kStartByte) && are(stray.subspan(kHeaderSize), {});
+  }
+  if (stray.size() < kFlushSize || stray[0] == kStartByte) return false;
+  has_flushed_ = are(stray, stray[0]);
+  return has_flushed_;
+}
+
 void Framing::judge_stray(Bytes stray, bool is_before_frame) {
   const auto excused = std::min(excused_, stray.size());
   excused_ -= excused;
   stray = stray.subspan(excused);
-  if (stray.empty()) return;
+  if (stray.empty() || is_reset(stray)) return;
   if (is_before_frame && stray.back() == kStartByte) {
     complain_("parol6.host.stray-start", fmt::format("{} in front of a frame", excerpt(stray)));
   } else {

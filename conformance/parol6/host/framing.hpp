@@ -25,6 +25,7 @@ class Framing {
  private:
   void judge_noise(Bytes noise, bool is_before_frame);
   void judge_stray(Bytes stray, bool is_before_frame);
+  [[nodiscard]] bool is_reset(Bytes stray);
   void judge_duration(Instant time);
 
   Complain complain_;
@@ -34,6 +35,7 @@ class Framing {
   std::size_t unfinished_ = 0;  ///< bytes that are in no message yet
   Instant begun_{};             ///< when the first of them came
   std::size_t excused_ = 0;     ///< bytes that belong to a frame of a wrong length
+  bool has_flushed_ = false;    ///< since the last frame
 };
 
 }  // namespace armjig::parol6::programs

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "conformance/parol6/host/occasions.hpp"
+
 namespace armjig::parol6::programs {
 namespace {
 
@@ -35,7 +37,9 @@ void Pace::judge(Instant time, const Complain& complain) {
 }
 
 /// `time`: of the first frame behind the window. A program that was not there is not slow.
-void Pace::judge_window(Instant time, const Complain& complain) const {
+void Pace::judge_window(Instant time, const Complain& complain_now) const {
+  const auto complain = complain_now.resting_on({.since = window_begin_});
+  complain.occasion(occasion::kSecond);
   if (frames_ > kMost) {
     complain("parol6.host.rate-fast", fmt::format("{} frames came in a second", frames_));
     return;

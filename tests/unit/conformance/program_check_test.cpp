@@ -5,12 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "conformance/morap/host/check.hpp"
 #include "conformance/parol6/host/check.hpp"
+#include "emulators/morap/options.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "harness/capture/trace.hpp"
+#include "harness/link/emulated_bus_port.hpp"
 #include "tests/unit/support/source_dir.hpp"
 
 namespace armjig {
@@ -68,6 +73,62 @@ TEST(ProgramCheck, SeesWhatAHandBesideTheDeviceDoes) {
     device->clear_sent();
   }
   EXPECT_GT(check.count("parol6.host.estop-disables"), 0U);
+}
+
+const ReportRow& row_of(const Report& report, std::string_view name) {
+  return *std::ranges::find(report.rows, name, &ReportRow::name);
+}
+
+TEST(ProgramCheck, PassesNothingThatHadNoOccasion) {
+  ProgramCheck check{parol6_entry(), {}, [](const Offence&) {}};
+  const auto device = watched_arm(check);
+  device->receive(at(0ms), encode(idle_with_gripper(0)));
+  const auto report = check.finish();
+  EXPECT_EQ(row_of(report, "parol6.host.frame-length").verdict, Verdict::kPass);
+  const auto& go_to = row_of(report, "parol6.host.go-to-unhomed");
+  EXPECT_EQ(go_to.verdict, Verdict::kSkipped);
+  EXPECT_EQ(go_to.actual, "no occasion without a go-to");
+  EXPECT_EQ(conclusion_of(report), Conclusion::kPassed);
+}
+
+TEST(ProgramCheck, SaysWhatItCouldNotJudgeBecauseItsHostWasLate) {
+  ProgramCheck check{parol6_entry(), {}, [](const Offence&) {}};
+  const auto device = watched_arm(check);
+  parol6::CommandFrame jog{.command = parol6::Command::kJog};
+  jog.speed[0] = StepsPerSecond{100};
+  const auto send = [&](Duration time) {
+    device->receive(at(time), encode(time < 100ms ? idle_with_gripper(0) : jog));
+    device->advance_to(at(time + 5ms));
+    device->clear_sent();
+  };
+  for (auto now = 0ms; now <= 390ms; now += 10ms) send(now);
+  device->overlook(at(400ms), at(1s));
+  device->advance_to(at(1s));
+  for (auto now = 1000ms; now <= 3000ms; now += 10ms) send(now);
+  const auto report = check.finish();
+  EXPECT_EQ(report.count(Verdict::kFail), 0U);
+  EXPECT_EQ(row_of(report, "parol6.host.gap-in-motion").verdict, Verdict::kInconclusive);
+  EXPECT_THAT(report.facts,
+              testing::Contains(std::pair<std::string, std::string>{
+                  "overlooked", "0.600 s (20.0 %): this emulator was late itself then"}));
+}
+
+TEST(ProgramCheck, HearsTheMessagesOfABusWhenTheyAreOver) {
+  std::vector<std::string> told;
+  ProgramCheck check{morap::programs::program_check(), {}, [&told](const Offence& offence) {
+                       told.emplace_back(offence.requirement);
+                     }};
+  const BusAddress node{0x12};
+  EmulatedBusPort<std::unique_ptr<HostedBus>> port{
+      check.watch(make_hosted(*morap::emulation::make({}, "test")))};
+  const std::array unknown{std::byte{6}};
+  const std::array angle{std::byte{0x83}};
+  std::array<std::byte, 5> answer{};
+  ASSERT_EQ(port.transfer(std::array{write_to(node, unknown)}), Transfer::kDone);
+  EXPECT_THAT(told, testing::ElementsAre("morap.host.known-ids"));
+  ASSERT_EQ(port.transfer(std::array{write_to(node, angle), read_from(node, answer)}),
+            Transfer::kDone);
+  EXPECT_THAT(told, testing::ElementsAre("morap.host.known-ids", "morap.host.read-size"));
 }
 
 TEST(ProgramCheck, PassesNothingThatDidNotRun) {

@@ -56,7 +56,7 @@ constexpr Room kRooms[] = {
      "harness/core harness/wire harness/capture emulators/demo emulators/i2c emulators/kinovazed "
      "emulators/morap emulators/parol6"},
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
-    {"emulators/host", "harness/core harness/link emulators/memory"},
+    {"emulators/host", "harness/core harness/link harness/timing emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},
     {"conformance",
      "harness/core harness/wire harness/config harness/link harness/drive harness/rig "

@@ -70,10 +70,12 @@ class Session {
   bool touch(std::string_view input, std::int64_t value) { return server_->touch(input, value); }
 
   /// Ids of what was broken; ends the session.
-  std::set<std::string> broken() {
+  std::set<std::string> broken() { return rows_with(Verdict::kFail); }
+  /// The same of another verdict.
+  std::set<std::string> rows_with(Verdict verdict) {
     std::set<std::string> ids;
     for (const auto& row : check_.finish().rows) {
-      if (row.verdict == Verdict::kFail) ids.insert(row.requirement);
+      if (row.verdict == verdict) ids.insert(row.requirement);
     }
     return ids;
   }
@@ -229,6 +231,27 @@ TEST(ClientRequirements, AreAllBrokenBySomeClient) {
   for (const auto& requirement : host_requirements()) all.insert(requirement.id);
   EXPECT_EQ(tried, all);
   EXPECT_GE(all.size(), 20U);
+}
+
+TEST(ClientRequirements, ArePassedOnlyByAClientThatCouldBreakThem) {
+  Session shy;
+  shy.look().say("EStop").leave();
+  const auto passed = shy.rows_with(Verdict::kPass);
+  EXPECT_THAT(passed,
+              testing::IsSupersetOf({"kinovazed.host.line-end", "kinovazed.host.leaves-answered",
+                                     "kinovazed.host.initialize-first"}));
+  for (const auto* id : {"kinovazed.host.leaves-stick", "kinovazed.host.unfold-first",
+                         "kinovazed.host.mode-pause", "kinovazed.host.active-objective"}) {
+    EXPECT_FALSE(passed.contains(id)) << id;
+  }
+  Session bold;
+  bold.steer().say("MoveJoystick:9:0:0").say("MoveJoystick:0:0:0").say("SetJoystickMode:NoMode");
+  bold.say("RunObjective:Home", 1s).wait(5s).leave();
+  EXPECT_THAT(
+      bold.rows_with(Verdict::kPass),
+      testing::IsSupersetOf({"kinovazed.host.leaves-stick", "kinovazed.host.waits-for-event",
+                             "kinovazed.host.objective-runs", "kinovazed.host.stick-mode",
+                             "kinovazed.host.mode-settles"}));
 }
 
 void rest(Client& client, Duration duration) {

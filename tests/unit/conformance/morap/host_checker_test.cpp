@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ std::set<std::string> offences_of(const std::vector<std::string>& transactions) 
   checker->finish(time);
   std::set<std::string> names;
   for (const auto& offence : checker->take_offences()) {
+    EXPECT_TRUE(checker->had_occasion(
+        *std::ranges::find(host_requirements(), offence.requirement, &Requirement::id)))
+        << offence.requirement;
     names.insert(std::string{offence.requirement}.substr(std::string{"morap.host."}.size()));
   }
   return names;
@@ -50,6 +54,15 @@ TEST(MorapHostChecker, FindsNothingInSoundSessions) {
                            "23 00 C8 00 01 00 00 20 41", "22 10", "22 01 00 00 00 00", "22 00"}),
               testing::IsEmpty());
   EXPECT_THAT(offences_of({"D0 6B 80", "D1 00 00", "22"}), testing::IsEmpty());
+}
+
+TEST(MorapHostChecker, KnowsWhatAMasterDidNotTry) {
+  const auto checker = program_check().make({});
+  checker->to_device(at(0ms), *from_hex("22 00"));
+  for (const auto& requirement : host_requirements()) {
+    const bool is_of_nodes = requirement.occasion == "a message to a node";
+    EXPECT_EQ(checker->had_occasion(requirement), is_of_nodes) << requirement.id;
+  }
 }
 
 struct Row {

@@ -48,6 +48,7 @@ class Program {
       if (drive != nullptr) drive->receive(sent.time, sent.bytes);
     }
     arm_.clear_sent();
+    checker_->wait_until(at(now_ - Duration{1}));
   }
 
   /// One period of the ordinary loop.
@@ -72,15 +73,24 @@ class Program {
     arm_.touch(at(now_), [level](Plant& plant) { plant.inputs.estop = level; });
   }
 
-  /// Ids of what it broke; ends the session.
-  std::set<std::string> broken() {
-    checker_->finish(at(now_));
+  void overlook(Duration from) { checker_->overlook(at(from), at(now_)); }
+  [[nodiscard]] Duration now() const noexcept { return now_; }
+  [[nodiscard]] const ProgramChecker& checker() const noexcept { return *checker_; }
+
+  /// Ids of what it broke until now.
+  [[nodiscard]] std::set<std::string> broken_so_far() {
     std::set<std::string> ids;
     for (const auto& offence : checker_->take_offences()) {
       ids.emplace(offence.requirement);
       EXPECT_FALSE(offence.what.empty());
     }
     return ids;
+  }
+
+  /// Ids of what it broke; ends the session.
+  std::set<std::string> broken() {
+    checker_->finish(at(now_));
+    return broken_so_far();
   }
 
   TelemetryFrame telemetry;
@@ -384,6 +394,109 @@ TEST_P(EachHostRequirement, IsBrokenByAProgramThatBreaksNoOther) {
   Program program{GetParam().options};
   GetParam().run(program);
   EXPECT_THAT(program.broken(), testing::ElementsAre(std::string{GetParam().requirement}));
+  const auto broken =
+      std::ranges::find(host_requirements(), GetParam().requirement, &Requirement::id);
+  EXPECT_TRUE(program.checker().had_occasion(*broken)) << broken->occasion;
+}
+
+TEST(HostRequirements, AreNotTriedByAProgramThatIsIdle) {
+  Program program;
+  program.hold(idle(), 3s);
+  ASSERT_THAT(program.broken(), testing::IsEmpty());
+  const auto is_tried = [&](std::string_view id) {
+    return program.checker().had_occasion(
+        *std::ranges::find(host_requirements(), id, &Requirement::id));
+  };
+  EXPECT_TRUE(is_tried("parol6.host.frame-length"));
+  EXPECT_TRUE(is_tried("parol6.host.rate-slow"));
+  for (const auto* id :
+       {"parol6.host.gap-in-motion", "parol6.host.estop-disables", "parol6.host.go-to-range",
+        "parol6.host.jog-bound", "parol6.host.home-held", "parol6.host.gripper-mode-once"}) {
+    EXPECT_FALSE(is_tried(id)) << id;
+  }
+}
+
+TEST(HostChecker, TellsOfAHostThatDiesInMotionWhenItHappens) {
+  Program program;
+  program.hold(idle(), 50ms);
+  program.hold(with(Command::kJog, {500}), 50ms);
+  program.wait(900ms);
+  EXPECT_THAT(program.broken_so_far(), testing::IsEmpty()) << "it may still come back";
+  program.wait(200ms);
+  EXPECT_THAT(program.broken_so_far(), testing::ElementsAre("parol6.host.silent-in-motion"));
+  program.wait(10s);
+  program.hold(idle(), 50ms);
+  EXPECT_THAT(program.broken(), testing::IsEmpty()) << "it was said";
+}
+
+TEST(HostChecker, TellsNothingOfAHostThatStopsAndGoes) {
+  Program program;
+  program.hold(idle(), 50ms);
+  program.hold(with(Command::kJog, {500}), 50ms);
+  program.hold(idle(), 20ms);
+  program.wait(10s);
+  EXPECT_THAT(program.broken(), testing::IsEmpty());
+}
+
+/// Frames that wait while nobody looks, and then come together.
+void send_unseen(Program& program, const CommandFrame& frame, Duration duration) {
+  const auto from = program.now();
+  program.wait(duration);
+  program.overlook(from);
+  for (auto left = duration; left > 0ms; left -= 10ms) program.write(encode(frame));
+}
+
+TEST(HostChecker, BlamesNobodyForTimesInWhichNobodyLooked) {
+  Program program;
+  program.hold(idle(), 50ms);
+  program.hold(with(Command::kJog, {500}), 500ms);
+  send_unseen(program, with(Command::kJog, {500}), 600ms);
+  program.hold(with(Command::kJog, {500}), 2s);
+  program.hold(idle(), 50ms);
+  EXPECT_THAT(program.broken(), testing::IsEmpty());
+  EXPECT_TRUE(program.checker().is_in_doubt("parol6.host.gap-in-motion"));
+  EXPECT_TRUE(program.checker().is_in_doubt("parol6.host.rate-fast"));
+  EXPECT_FALSE(program.checker().is_in_doubt("parol6.host.frame-length"));
+  EXPECT_EQ(program.checker().overlooked(), 600ms);
+}
+
+TEST(HostChecker, BlamesAProgramForMoreThanWhatNobodySaw) {
+  Program program;
+  program.hold(idle(), 50ms);
+  program.hold(with(Command::kJog, {500}), 500ms);
+  const auto from = program.now();
+  program.wait(30ms);
+  program.overlook(from);
+  program.wait(570ms);
+  EXPECT_THAT(program.broken_so_far(), testing::IsEmpty());
+  program.cycle(idle_with([](CommandFrame& frame) { frame.gripper.id = 16; }));
+  EXPECT_THAT(program.broken(),
+              testing::ElementsAre("parol6.host.gap-in-motion", "parol6.host.gripper-id"));
+}
+
+TEST(HostChecker, BlamesAProgramForItsBytesAtAnyTime) {
+  Program program;
+  program.hold(idle(), 50ms);
+  send_unseen(program, idle_with([](CommandFrame& frame) { frame.gripper.id = 16; }), 600ms);
+  EXPECT_THAT(program.broken(), testing::ElementsAre("parol6.host.gripper-id"));
+}
+
+TEST(HostChecker, FindsNothingWrongWithAReceiverThatIsReset) {
+  const auto store = joined(hex("FF FF FF FF"), test::zeros(255));
+  const ByteVector flush(300, std::byte{0x55});
+  Program program;
+  for (int i = 0; i < 2; ++i) {
+    program.write(flush);
+    program.write(store);
+    program.hold(idle(), 100ms);
+  }
+  EXPECT_THAT(program.broken_so_far(), testing::IsEmpty());
+  program.write(store);
+  program.hold(idle(), 30ms);
+  EXPECT_THAT(program.broken_so_far(), testing::ElementsAre("parol6.host.stray-bytes"));
+  program.write(Bytes{flush}.first(255));
+  program.hold(idle(), 30ms);
+  EXPECT_THAT(program.broken(), testing::ElementsAre("parol6.host.stray-bytes"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Parol6, EachHostRequirement, testing::ValuesIn(wrong_programs()));
