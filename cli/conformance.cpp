@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +15,7 @@
 #include "cli/choice.hpp"
 #include "cli/conformance_mutants.hpp"
 #include "cli/device.hpp"
+#include "cli/missed_time.hpp"
 #include "cli/report_files.hpp"
 #include "cli/target_options.hpp"
 #include "cli/terminal.hpp"
@@ -177,6 +179,11 @@ Exit run(const Device& device, const Suite& suite, Options options) {
   options.run.permissions = how->target.is_emulated() ? Permissions::all() : how->permissions;
   options.run.target = how->target.text;
   options.run.command = command_of(options);
+  std::optional<MissedTime> missed;
+  if (!how->target.is_emulated()) {  // virtual time stands still when we do
+    missed.emplace();
+    options.run.missed = [&missed] { return missed->total(); };
+  }
   const auto started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   const auto style = style_of(options.colour, stdout);
   auto result = run_suite(suite, **bench, options.run, [style](const ReportRow& row) {

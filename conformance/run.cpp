@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -22,6 +23,9 @@ std::uint64_t seed_of(std::string_view name, std::uint64_t seed) noexcept {
   }
   return hash;
 }
+
+/// So often a case is started on a machine that has no time for it.
+constexpr int kMostStarts = 3;
 
 std::string wording_of(const Judgement& judgement) {
   if (judgement.expected.empty()) return judgement.actual;
@@ -50,6 +54,7 @@ class Run {
     for (const auto* one : cases) add(judge(*one));
     if (is_alive_) (void)check_alive("after the last case");
     for (const auto& waiver : options_.waivers) check_use(waiver);
+    if (restarts_ > 0) add_missed();
     return std::move(report_);
   }
 
@@ -65,6 +70,31 @@ class Run {
         {"selected", fmt::format("{} cases", selected)},
         {"answers in", fmt::format("{} us at most", bench_.noise() / std::chrono::microseconds{1})},
     };
+  }
+
+  void add_missed() {
+    const std::chrono::duration<double> missed = options_.missed();
+    report_.facts.emplace_back(
+        "stopped", fmt::format("{:.3f} s in all did this process not run; cases were started again "
+                               "{} times for that",
+                               missed.count(), restarts_));
+  }
+
+  /// What `find` comes to, again if this process did not run meanwhile and it is not good: then
+  /// that says nothing about the device.
+  template <class Find, class IsGood>
+  auto undisturbed(Find find, IsGood is_good) {
+    for (int start = 1;; ++start) {
+      const auto before = missed();
+      auto found = find();
+      is_disturbed_ = missed() != before && !is_good(found);
+      if (!is_disturbed_ || bench_.error() || start == kMostStarts) return found;
+      ++restarts_;
+    }
+  }
+
+  [[nodiscard]] Duration missed() const {
+    return options_.missed ? options_.missed() : Duration::zero();
   }
 
   ReportRow judge(const Case& one) {
@@ -120,6 +150,18 @@ class Run {
   }
 
   Finding run_once(const Case& one, Profile profile) {
+    auto finding =
+        undisturbed([&] { return start_once(one, profile); },
+                    [](const Finding& each) { return each.judgement.verdict == Verdict::kPass; });
+    if (is_disturbed_ && !bench_.error()) {
+      finding.judgement = {Verdict::kInconclusive,
+                           {},
+                           "this process did not run all the time, whenever it was started"};
+    }
+    return finding;
+  }
+
+  Finding start_once(const Case& one, Profile profile) {
     Finding finding;
     if (auto obstacle = bring_to_start(one, profile)) {
       finding.judgement = *std::move(obstacle);
@@ -138,9 +180,11 @@ class Run {
   std::optional<Judgement> bring_to_start(const Case& one, Profile profile) {
     auto known = out_of_reach_.find(one.start);
     if (known == out_of_reach_.end()) {
+      const auto before = missed();
       bench_.begin(profile, options_.seed);
       bench_.bring_to(one.start);
       if (bench_.judgement().verdict == Verdict::kPass) return std::nullopt;
+      if (missed() != before) return bench_.judgement();
       known = out_of_reach_.emplace(one.start, bench_.judgement()).first;
     }
     const auto& obstacle = known->second;
@@ -212,8 +256,13 @@ class Run {
   }
 
   bool check_alive(std::string_view when) {
-    bench_.begin(options_.profile, options_.seed);
-    if (bench_.is_alive()) return true;
+    const bool is_alive = undisturbed(
+        [this] {
+          bench_.begin(options_.profile, options_.seed);
+          return bench_.is_alive();
+        },
+        std::identity{});
+    if (is_alive) return true;
     auto row = row_of_device("alive", Verdict::kError);
     row.summary = fmt::format("no sign of life {}", when);
     row.expected = "an answer to a good message";
@@ -258,6 +307,8 @@ class Run {
   Report report_;
   std::map<std::uint8_t, Judgement> out_of_reach_;  ///< start states, and why
   std::set<std::uint8_t> blamed_;                   ///< those with a row of their own
+  int restarts_ = 0;                                ///< of cases, because this process did not run
+  bool is_disturbed_ = false;                       ///< what was found last says nothing
   bool is_alive_ = false;
   bool has_failed_ = false;
 };

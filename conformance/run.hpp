@@ -23,6 +23,9 @@ struct RunOptions {
   int repeat = 1;  ///< runs of each case, at least 1; different verdicts make it flaky
   bool stops_at_first_failure = false;
   std::vector<Waiver> waivers{};
+  /// How long in all this process did not run although it should have; nobody asks if empty. A case
+  /// that did not pass while that grew is started again.
+  std::function<Duration()> missed{};
   std::string target{};   ///< as the user wrote it, for the report
   std::string command{};  ///< the command line, without filter, that does the same again
 };
@@ -30,6 +33,9 @@ struct RunOptions {
 /// Runs the selected cases and calls `on_row` after each. The device is asked for a sign of life
 /// first, last and when it fails by silence: one that answers no more is a `kError` row of its own
 /// and not a failure of the case. Cases that could not run because of it are `kSkipped`.
+///
+/// What was found while this process was stopped, or had no time, is not counted as a run of a
+/// case: it starts again, and after some such starts it is inconclusive.
 ///
 /// A case of a documented requirement that fails, while those of the firmware's requirement about
 /// the same thing pass, is a `kDeviation`.

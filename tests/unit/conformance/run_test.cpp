@@ -21,6 +21,10 @@ class NumberBench final : public Bench {
   bool is_alive() override { return !is_dead; }
   void bring_to(std::size_t start) override {
     visited.push_back(start);
+    if (stops_in_start-- > 0) {
+      missed += 1s;
+      return fail("the state", "nothing");
+    }
     if (start != kUnreachable) return;
     leaves_beyond_open ? leave_open("no hand") : fail("the state", "another one");
   }
@@ -42,6 +46,9 @@ class NumberBench final : public Bench {
   bool is_dead = false;
   bool leaves_beyond_open = false;
   bool obeys_firmware = true;
+  Duration missed{};       ///< in which it did not run
+  int stops_left = 0;      ///< so many times it stops in a case
+  int stops_in_start = 0;  ///< and on the way to its start
 
  protected:
   void forget_exchange() override {}
@@ -69,6 +76,13 @@ void fails_twice(Bench& bench) {
 void fails_every_other_time(Bench& bench) {
   if (number(bench).calls % 2 == 0) bench.fail("an odd call", "an even one");
 }
+void is_late(Bench& bench) {
+  auto& device = number(bench);
+  device.ran.emplace_back("late");
+  if (device.stops_left-- <= 0) return;
+  device.missed += 3s;
+  bench.fail_by_silence("an answer in time", "one 3 s later");
+}
 void dies(Bench& bench) {
   number(bench).is_dead = true;
   bench.fail_by_silence("an answer", "silence");
@@ -86,6 +100,7 @@ constexpr Requirement kRequirements[] = {
     {"n.too", Level::kMust, "It passes too.", "here"},
     {"n.fail", Level::kMust, "It is one.", "here"},
     {"n.flaky", Level::kMust, "It is odd.", "here"},
+    {"n.late", Level::kMust, "It is in time.", "here"},
     {"n.dies", Level::kMust, "It lives.", "here"},
     {"n.link", Level::kMust, "It is there.", "here"},
     {"n.quiet", Level::kMust, "It answers.", "here"},
@@ -107,6 +122,7 @@ constexpr Case kCases[] = {
     {.requirement = "n.skips", .rule = "r", .run = skips},
     {.requirement = "n.beyond", .variant = "a", .rule = "r", .run = passes, .start = 2},
     {.requirement = "n.beyond", .variant = "b", .rule = "r", .run = passes, .start = 2},
+    {.requirement = "n.late", .rule = "r", .run = is_late},
     {.requirement = "n.dies", .rule = "r", .run = dies},
     {.requirement = "n.link", .rule = "r", .run = loses_link},
     {.requirement = "n.documented", .rule = "r", .run = breaks_document},
@@ -221,6 +237,40 @@ TEST(ConformanceRun, CallsFlakyWhatIsNotAlwaysTheSame) {
   EXPECT_THAT(verdicts(report), ElementsAre("n.flaky flaky"));
   EXPECT_THAT(report.rows[0].actual, HasSubstr("in 2 of 4 runs"));
   EXPECT_THAT(verdicts(run("n.fail", {.repeat = 3})), ElementsAre("n.fail fail"));
+}
+
+RunOptions watching(const NumberBench& bench, int repeat = 1) {
+  return {.repeat = repeat, .missed = [&bench] { return bench.missed; }};
+}
+
+TEST(ConformanceRun, StartsACaseAgainThatItDidNotWatch) {
+  NumberBench bench;
+  bench.stops_left = 1;
+  const auto report = run(bench, "n.late", watching(bench, 2));
+  EXPECT_THAT(verdicts(report), ElementsAre("n.late pass")) << "and not flaky";
+  EXPECT_EQ(bench.ran.size(), 3U) << "two runs count";
+  EXPECT_EQ(report.facts.back().first, "stopped");
+  EXPECT_THAT(report.facts.back().second, HasSubstr("3.000 s"));
+}
+
+TEST(ConformanceRun, LeavesACaseOpenThatItNeverWatches) {
+  NumberBench bench;
+  bench.stops_left = 100;
+  EXPECT_THAT(verdicts(run(bench, "n.late", watching(bench))), ElementsAre("n.late inconclusive"));
+  EXPECT_EQ(bench.ran.size(), 3U);
+}
+
+TEST(ConformanceRun, CountsFailuresThatItWatched) {
+  NumberBench bench;
+  bench.stops_left = 1;
+  EXPECT_THAT(verdicts(run(bench, "n.late")), ElementsAre("n.late fail"));
+  EXPECT_THAT(verdicts(run(bench, "n.fail", watching(bench))), ElementsAre("n.fail fail"));
+}
+
+TEST(ConformanceRun, TriesAStartStateAgainThatItDidNotWatch) {
+  NumberBench bench;
+  bench.stops_in_start = 1;
+  EXPECT_THAT(verdicts(run(bench, "n.too", watching(bench))), ElementsAre("n.too pass"));
 }
 
 TEST(ConformanceRun, StopsAtTheFirstFailureIfAsked) {
