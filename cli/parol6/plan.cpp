@@ -67,9 +67,9 @@ Exit plan(const Options& options) {
   if (!planning) return report(planning.error());
   const auto program = read_script(options.script);
   if (!program) return program.error();
-  const auto schedule = script::schedule(*program, planning->settings, planning->start);
+  const auto [schedule, found] = script::inspect(*program, planning->settings, planning->start);
   if (!schedule) {
-    print_diagnostic(schedule.error(), options.script.file);
+    print_diagnostics(found, options.script.file);
     return Exit::kUsage;
   }
   if (const auto done = write_all(options, *program, *schedule); !done) return report(done.error());
@@ -77,9 +77,7 @@ Exit plan(const Options& options) {
     fmt::print("{}", to_text(ReportSection{.title = options.script.file,
                                            .table = moves_table(*program, *schedule)}));
   }
-  for (const auto& diagnostic : script::check(*program, *schedule)) {
-    print_diagnostic(diagnostic, options.script.file);
-  }
+  print_diagnostics(found, options.script.file);
   return schedule->stop ? Exit::kFindings : Exit::kPassed;
 }
 

@@ -20,7 +20,6 @@
 #include "harness/script/check.hpp"
 #include "harness/script/program_run.hpp"
 #include "harness/script/run_output.hpp"
-#include "harness/script/schedule.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
 namespace armjig::cli {
@@ -130,34 +129,29 @@ class Session {
   Signals signals_;
 };
 
-Halt refused(const script::Diagnostic& diagnostic, const std::string& file) {
-  print_diagnostic(diagnostic, file);
-  return {Exit::kUsage, {}};
-}
-
 /// What it does, if all of it can be done from there. A long loop repeats itself: its first two
 /// passes say it all.
-tl::expected<script::Schedule, Halt> check_whole(const script::Program& program, Planning planning,
-                                                 const std::string& file) {
-  for (const auto& diagnostic : script::check(program)) {
-    if (diagnostic.severity != script::Severity::kError) continue;
-    return tl::unexpected{refused(diagnostic, file)};
-  }
+tl::expected<script::Inspection, Halt> check_whole(const script::Program& program,
+                                                   Planning planning, const std::string& file) {
   planning.settings.passes = std::min<std::uint64_t>(planning.settings.passes, 2);
-  auto schedule = script::schedule(program, planning.settings, planning.start);
-  if (!schedule) return tl::unexpected{refused(schedule.error(), file)};
-  // The commander finds out on the way; nothing of that is sent here.
-  if (schedule->stop && program.dialect == script::Dialect::kCommander) {
-    return tl::unexpected{refused(*schedule->stop, file)};
-  }
-  return *std::move(schedule);
+  auto checked = script::inspect(program, planning.settings, planning.start);
+  // The commander finds out on the way where it ends; nothing of that is sent here.
+  const bool is_cut =
+      checked.schedule && checked.schedule->stop && program.dialect == script::Dialect::kCommander;
+  if (checked.schedule && !is_cut) return checked;
+  print_diagnostics(checked.found, file, script::Severity::kWarning);
+  return tl::unexpected{Halt{Exit::kUsage, {}}};
 }
 
-void print_warnings(const script::Program& program, const script::Schedule& schedule,
-                    const std::string& file) {
-  for (const auto& diagnostic : script::check(program, schedule)) {
-    if (diagnostic.severity != script::Severity::kNote) print_diagnostic(diagnostic, file);
-  }
+/// Whether a device that is not emulated would be let do it. What is refused on the way leaves an
+/// arm half way.
+std::optional<Halt> check_guarded(const script::Program& program, const script::Schedule& schedule,
+                                  const Planning& planning, std::uint8_t homed,
+                                  const std::string& file) {
+  auto refusal = script::check_guarded(program, schedule, planning.start, homed);
+  if (!refusal) return std::nullopt;
+  print_diagnostics({*std::move(refusal)}, file);
+  return Halt{Exit::kRig, {}};
 }
 
 /// Whether the user agreed to what it does, before anything is sent.
@@ -177,7 +171,7 @@ std::optional<Halt> check_permissions(const script::Program& program, const RigO
 
 /// Brings the arm to where the program can begin, and plans it from there.
 std::optional<Halt> prepare(Session& session, const script::Program& program, Planning& planning,
-                            const Options& options) {
+                            const Options& options, const Target& target) {
   if (auto halt = session.begin()) return halt;
   if (options.must_home) {
     if (auto halt = session.home()) return halt;
@@ -186,10 +180,12 @@ std::optional<Halt> prepare(Session& session, const script::Program& program, Pl
     return Halt{Exit::kRig, "the arm is not homed: --home homes it first, --unhomed goes without"};
   }
   planning.start = session.telemetry().position;
-  const auto schedule = check_whole(program, planning, options.script.file);
-  if (!schedule) return schedule.error();
-  print_warnings(program, *schedule, options.script.file);
-  return std::nullopt;
+  const auto& file = options.script.file;
+  const auto checked = check_whole(program, planning, file);
+  if (!checked) return checked.error();
+  print_diagnostics(checked->found, file, script::Severity::kWarning);
+  if (target.is_emulated()) return std::nullopt;
+  return check_guarded(program, *checked->schedule, planning, session.telemetry().homed, file);
 }
 
 Outcome<void> write_plots(const script::ProgramRun& run, const std::string& folder) {
@@ -201,14 +197,14 @@ Outcome<void> write_plots(const script::ProgramRun& run, const std::string& fold
 
 /// Prints what came of it.
 Exit run_on(Session& session, const script::Program& program, Planning planning,
-            const Options& options) {
+            const Options& options, const Target& target) {
   const auto say = [&](const Halt& halt) {
     if (!halt.text.empty()) {
       fmt::print(stderr, "armjig: {}: {}\n", options.target.target, halt.text);
     }
     return halt.exit;
   };
-  if (const auto halt = prepare(session, program, planning, options)) return say(*halt);
+  if (const auto halt = prepare(session, program, planning, options, target)) return say(*halt);
   script::ProgramRun run{program, planning.settings};
   if (!options.plots.empty()) run.keep_samples(script::kMostFrames / 10);
   const auto halt = session.go_through(run, "run");
@@ -238,19 +234,25 @@ Exit run(const Device& device, const Options& options) {
     planning->settings.planner.limits = parol6::planning::LimitCheck::kIgnored;
   const auto program = read_script(options.script);
   if (!program) return program.error();
-  if (const auto checked = check_whole(*program, *planning, options.script.file); !checked) {
-    return checked.error().exit;
-  }
+  const auto checked = check_whole(*program, *planning, options.script.file);
+  if (!checked) return checked.error().exit;
   const auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
   if (const auto halt = check_permissions(*program, *how, options.must_home)) {
     fmt::print(stderr, "armjig: {}: {}\n", options.target.target, halt->text);
     return halt->exit;
   }
+  if (!how->target.is_emulated()) {
+    const std::uint8_t homed = options.is_unhomed ? 0 : 0xFF;
+    if (const auto halt =
+            check_guarded(*program, *checked->schedule, *planning, homed, options.script.file)) {
+      return halt->exit;
+    }
+  }
   auto rig = open_rig<OnStream>(device, *how);
   if (!rig) return report(rig.error());
   Session session{*std::move(rig)};
-  return run_on(session, *program, *planning, options);
+  return run_on(session, *program, *planning, options, how->target);
 }
 
 }  // namespace

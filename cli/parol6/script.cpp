@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,7 +11,6 @@
 #include "harness/script/check.hpp"
 #include "harness/script/format.hpp"
 #include "harness/script/parser.hpp"
-#include "harness/script/schedule.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -50,14 +48,8 @@ Exit check(const CheckOptions& options) {
   const auto text = read_script_text(options.script);
   if (!text) return report(text.error());
   const auto program = script::parse(*text, dialect_of(options.script));
-  if (!program) return refuse(program.error(), file);
-  auto found = script::check(*program);
-  const auto is_error = [](const auto& one) { return one.severity == script::Severity::kError; };
-  if (std::ranges::none_of(found, is_error)) {
-    const auto schedule = script::schedule(*program, planning->settings, planning->start);
-    if (schedule) std::ranges::copy(script::check(*program, *schedule), std::back_inserter(found));
-    if (!schedule) found.push_back(schedule.error());
-  }
+  if (!program) return refuse(with_advice(program.error(), *text, options.script), file);
+  const auto found = script::inspect(*program, planning->settings, planning->start).found;
   for (const auto& diagnostic : found) fmt::print("{}\n", describe(diagnostic, file));
   const bool is_clean = std::ranges::all_of(
       found, [](const auto& one) { return one.severity == script::Severity::kNote; });
@@ -69,7 +61,7 @@ Exit format(const ScriptOptions& options) {
   if (!text) return report(text.error());
   const auto formatted = script::format(*text, dialect_of(options));
   if (!formatted) {
-    print_diagnostic(formatted.error().front(), options.file);
+    print_diagnostics(with_advice(formatted.error(), *text, options), options.file);
     return Exit::kUsage;
   }
   fmt::print("{}", *formatted);

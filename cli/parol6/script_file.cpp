@@ -15,6 +15,7 @@
 #include "cli/choice.hpp"
 #include "harness/arm/orientation.hpp"
 #include "harness/motion/parol6/joint_table.hpp"
+#include "harness/script/check.hpp"
 #include "harness/script/parser.hpp"
 
 namespace armjig::cli {
@@ -74,12 +75,28 @@ tl::expected<script::Program, Exit> read_script(const ScriptOptions& options) {
   if (!text) return tl::unexpected{report(text.error())};
   auto program = script::parse(*text, dialect_of(options));
   if (program) return *std::move(program);
-  print_diagnostic(program.error().front(), options.file);
+  print_diagnostics(with_advice(program.error(), *text, options), options.file);
   return tl::unexpected{Exit::kUsage};
 }
 
-void print_diagnostic(const script::Diagnostic& diagnostic, const std::string& file) {
-  fmt::print(stderr, "{}\n", describe(diagnostic, file));
+std::vector<script::Diagnostic> with_advice(std::vector<script::Diagnostic> errors,
+                                            const std::string& text, const ScriptOptions& options) {
+  const bool is_commander = dialect_of(options) == script::Dialect::kCommander;
+  const auto other = is_commander ? script::Dialect::kDocumented : script::Dialect::kCommander;
+  const auto program = script::parse(text, other);
+  const auto is_error = [](const auto& one) { return one.severity == script::Severity::kError; };
+  if (program && std::ranges::none_of(script::check(*program), is_error)) {
+    errors.push_back({script::Severity::kNote, errors.front().place,
+                      fmt::format("--dialect {} reads it", to_string(other))});
+  }
+  return errors;
+}
+
+void print_diagnostics(const std::vector<script::Diagnostic>& diagnostics, const std::string& file,
+                       script::Severity least) {
+  for (const auto& diagnostic : diagnostics) {
+    if (diagnostic.severity >= least) fmt::print(stderr, "{}\n", describe(diagnostic, file));
+  }
 }
 
 void add_planning_options(CLI::App& app, PlanningOptions& options) {

@@ -27,8 +27,14 @@ void add_script_options(CLI::App& app, ScriptOptions& options);
 /// Reads a program. What is wrong with it is printed, and answers the exit code.
 [[nodiscard]] tl::expected<script::Program, Exit> read_script(const ScriptOptions& options);
 
-/// Prints it as one line on standard error.
-void print_diagnostic(const script::Diagnostic& diagnostic, const std::string& file);
+/// All that is wrong with a text that cannot be read, and which dialect would read it.
+[[nodiscard]] std::vector<script::Diagnostic> with_advice(std::vector<script::Diagnostic> errors,
+                                                          const std::string& text,
+                                                          const ScriptOptions& options);
+
+/// Prints them on standard error, a line each; nothing of less than `least`.
+void print_diagnostics(const std::vector<script::Diagnostic>& diagnostics, const std::string& file,
+                       script::Severity least = script::Severity::kNote);
 
 /// How a program is planned, as written.
 struct PlanningOptions {

@@ -23,6 +23,10 @@ class PoseLine {
   /// After a share of the way, 0 to 1.
   [[nodiscard]] arm::Pose at(double share) const noexcept;
 
+  /// By how much the tool turns, radians: 0 to pi on the shorter way, up to 2 pi uncorrected. Close
+  /// to that `at` divides by nearly zero.
+  [[nodiscard]] double turn() const noexcept { return 2 * angle_; }
+
  private:
   using Quaternion = std::array<double, 4>;  ///< w, x, y, z
 

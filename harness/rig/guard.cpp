@@ -57,6 +57,7 @@ Result<void> Guard::admit(Messages messages) {
   if (auto taken = take_in(time()); !taken) return taken;
   watch_->give_sign_of_life();
   if (auto in_step = fall_into_step(); !in_step) return in_step;
+  judge_->set_time(time());
   auto refusal = judge_->judge(messages, permissions_);
   report_change();  // before it moves
   if (!refusal) return {};
@@ -79,6 +80,11 @@ Result<void> Guard::take_in(Instant deadline) {
   }
   look();
   return heard;
+}
+
+void Guard::hear(Bytes bytes) {
+  judge_->set_time(time());
+  judge_->observe(bytes);
 }
 
 void Guard::look() {

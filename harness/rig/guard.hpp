@@ -82,6 +82,9 @@ class Guard {
   void look();
   void stop_if_moving();
 
+  /// What the device sent.
+  void hear(Bytes bytes);
+
   [[nodiscard]] Judge& judge() noexcept { return *judge_; }
   [[nodiscard]] GuardState& watch() noexcept { return *watch_; }
 

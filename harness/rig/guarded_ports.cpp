@@ -47,7 +47,7 @@ Result<void> GuardedStream::listen(Instant deadline) {
   const auto size = inner().read(buffer, deadline);
   if (!size) return tl::unexpected{size.error()};
   const auto bytes = Bytes{buffer}.first(*size);
-  judge().observe(bytes);
+  hear(bytes);
   unread_.add(bytes, kMostUnread);
   return {};
 }
@@ -101,7 +101,7 @@ Result<void> GuardedSession::listen(Instant deadline) {
   const auto received = inner().receive(buffer, deadline);
   if (!received) return tl::unexpected{received.error()};
   const auto bytes = Bytes{buffer}.first(received->size);
-  judge().observe(bytes);
+  hear(bytes);
   unread_.add(bytes, kMostUnread);
   const bool is_end = received->arrival == Arrival::kEnd || received->arrival == Arrival::kReset;
   if (is_end) unread_end_ = *received;
@@ -156,7 +156,7 @@ Result<Transfer> GuardedBus::transfer(std::span<const BusMessage> messages) {
   if (done == Transfer::kDone) {
     for (const auto& message : messages) {
       const bool is_read = message.access == Access::kRead;
-      judge().observe(bytes_of(message, is_read ? Bytes{message.read} : message.write));
+      hear(bytes_of(message, is_read ? Bytes{message.read} : message.write));
     }
   }
   look();
@@ -169,7 +169,7 @@ Result<void> GuardedBus::put(Bytes message) {
   const auto done = port_->transfer({&part, 1});
   if (!done) return tl::unexpected{done.error()};
   if (*done != Transfer::kDone) return fail(ErrorCode::kRefused);
-  judge().observe(message);
+  hear(message);
   return {};
 }
 

@@ -9,6 +9,7 @@
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
+#include "harness/core/time.hpp"
 
 namespace armjig {
 
@@ -90,6 +91,9 @@ class Judge {
   /// whatever was half sent before; they are no command. Sent, and judged, before anything else and
   /// after a write that failed. Empty where there is no need.
   [[nodiscard]] virtual Bytes opening_bytes() const { return {}; }
+
+  /// What time it is from now on, for whom that matters. Times never decrease.
+  virtual void set_time(Instant /*now*/) {}
 
   /// Judges what is about to be sent. None: it may be, and the judge takes it that it is. With a
   /// refusal nothing of it must be sent.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/wire/parol6/firmware_receiver.hpp"
+#include "harness/wire/parol6/go_to_way.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 #include "harness/wire/steps.hpp"
 
@@ -69,9 +70,17 @@ bool is_estop_pressed(const TelemetryFrame& telemetry) noexcept {
   return (telemetry.io & io_flag::kEstopReleased) == 0;
 }
 
+constexpr auto kTopSpeeds = [] {
+  GoToWay::Limits speeds{};
+  for (std::size_t j = 0; j < kJointCount; ++j) speeds[j] = kJointBounds[j].max_speed;
+  return speeds;
+}();
+
 /// What a board does, as far as our writes and its answers tell.
 class Belief {
  public:
+  [[nodiscard]] GoToWay& way() noexcept { return way_; }
+  [[nodiscard]] const GoToWay& way() const noexcept { return way_; }
   [[nodiscard]] const CommandFrame& latched() const noexcept { return latched_; }
 
   void accept(const CommandFrame& frame) noexcept {
@@ -80,6 +89,7 @@ class Belief {
       may_be_homing_ = true;
     }
     if (moves(frame.command)) is_unheard_ = true;
+    if (frame.command != Command::kGoTo) way_.end();
     latched_ = frame;
   }
 
@@ -101,6 +111,7 @@ class Belief {
 
  private:
   CommandFrame latched_{};
+  GoToWay way_{kTopSpeeds};
   bool may_be_homing_ = false;
   bool was_unhomed_ = false;  ///< since it was told to home
   bool is_unheard_ = false;   ///< whether the end of a motion was heard
@@ -146,6 +157,8 @@ class BoardJudge final : public Judge {
 
   [[nodiscard]] Bytes opening_bytes() const override { return kOpening; }
 
+  void set_time(Instant now) override { now_ = now; }
+
   std::optional<Refusal> judge(Messages messages, const Permissions& permissions) override {
     const auto bytes = messages.front();
     auto receiver = receiver_;
@@ -156,7 +169,7 @@ class BoardJudge final : public Judge {
     recent_.insert(recent_.end(), bytes.begin(), bytes.end());
     const auto judge_and_accept = [&](Belief& board) {
       return [&](const CommandFrame& frame) -> Verdict {
-        if (auto refusal = judge_frame(frame, board.latched(), permissions)) return refusal;
+        if (auto refusal = judge_frame(frame, board, permissions)) return refusal;
         board.accept(frame);
         return std::nullopt;
       };
@@ -220,8 +233,9 @@ class BoardJudge final : public Judge {
 
   [[nodiscard]] bool is_arm_homed() const noexcept { return telemetry_ && is_homed(*telemetry_); }
 
-  [[nodiscard]] Verdict judge_frame(const CommandFrame& frame, const CommandFrame& before,
+  [[nodiscard]] Verdict judge_frame(const CommandFrame& frame, Belief& board,
                                     const Permissions& permissions) const {
+    const auto& before = board.latched();
     const auto needs = [&](Hazard hazard, std::string_view what) {
       return demand(hazard, permissions, what);
     };
@@ -246,7 +260,7 @@ class BoardJudge final : public Judge {
       case Command::kGoTo:
         if (auto refusal = needs(Hazard::kMove, "go-to")) return refusal;
         if (auto refusal = refuse_when_unsafe(Hazard::kMove)) return refusal;
-        return judge_go_to(frame);
+        return judge_go_to(frame, board.way());
       case Command::kDemo:
         return Refusal{Hazard::kMove, "code 69 moves all joints and cannot be disabled"};
       case Command::kIdle:
@@ -285,32 +299,35 @@ class BoardJudge final : public Judge {
     return std::nullopt;
   }
 
-  [[nodiscard]] Verdict judge_go_to(const CommandFrame& frame) const {
+  [[nodiscard]] Verdict judge_go_to(const CommandFrame& frame, GoToWay& way) const {
     if (!is_arm_homed()) return Refusal{Hazard::kMove, "go-to needs a homed arm"};
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& bounds = kJointBounds[j];
-      if (!bounds.contain(frame.position[j]) ||
-          !bounds.contain(resting_place(frame.position[j], frame.speed[j]))) {
+      const auto leads_out = [&](Steps place) {
+        return way.leads_out(j, bounds, place, telemetry_->position[j]);
+      };
+      const auto goal = frame.position[j];
+      if (leads_out(goal) || leads_out(resting_place(goal, frame.speed[j]))) {
         return Refusal{Hazard::kMove, fmt::format("j{} may go from {} to {} steps", j + 1,
                                                   bounds.lower.value, bounds.upper.value)};
       }
-      // The board closes any distance within 10 ms if it can, so far targets are fast ones.
-      const auto closing =
-          50.0 * std::abs(frame.position[j].value - telemetry_->position[j].value) +
-          std::abs(frame.speed[j].value) / 2.0;
-      if (closing > bounds.max_speed.value) {
-        return Refusal{Hazard::kMove,
-                       fmt::format("j{} would go at {:.0f} steps/s, {} are allowed: send the way "
-                                   "in smaller pieces",
-                                   j + 1, closing, bounds.max_speed.value)};
-      }
     }
-    return std::nullopt;
+    const auto excesses = way.go_on(now_, frame, telemetry_->position);
+    if (excesses.empty()) return std::nullopt;
+    const auto& excess = excesses.front();
+    return Refusal{Hazard::kMove, fmt::format("j{} would {}, {} steps/s are allowed: send the way "
+                                              "in smaller pieces",
+                                              excess.joint + 1, describe(excess),
+                                              kJointBounds[excess.joint].max_speed.value)};
   }
 
   [[nodiscard]] std::optional<std::string> reason_to_stop() const {
     if (is_estop_pressed(*telemetry_)) return "the emergency stop was pressed";
     for (const auto* board : {&shipped_, &strict_}) {
+      if (const auto j = board->way().stray(now_, telemetry_->position)) {
+        return fmt::format("j{} is at {} steps and does not follow its set-points", *j + 1,
+                           telemetry_->position[*j].value);
+      }
       if (!is_arm_homed() || board->latched().command != Command::kJog) continue;
       for (std::size_t j = 0; j < kJointCount; ++j) {
         if (kJointBounds[j].forbid(telemetry_->position[j], board->latched().speed[j])) {
@@ -321,6 +338,7 @@ class BoardJudge final : public Judge {
     return std::nullopt;
   }
 
+  Instant now_{};
   FirmwareReceiver receiver_;      ///< what the shipped board would make of the bytes
   Belief shipped_;                 ///< and do
   std::vector<std::byte> recent_;  ///< that may still become part of a window

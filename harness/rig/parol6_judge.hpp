@@ -10,9 +10,10 @@ namespace armjig::parol6::rig {
 
 /// Judges by what the shipped board would accept, and by whatever looks like a frame to a board
 /// that keeps to the document. Bounds of position need a homed arm: without it go-to is refused,
-/// and jog is bounded in speed only. While the emergency stop is pressed, or the board has been
-/// silent for half a second of frames, nothing may move. The built-in demonstration ignores the
-/// board's own disable and is always refused.
+/// and jog is bounded in speed only. Of go-to frames it judges how fast one follows the other
+/// (GoToWay), and stops an arm that does not follow them. While the emergency stop is pressed, or
+/// the board has been silent for half a second of frames, nothing may move. The built-in
+/// demonstration ignores the board's own disable and is always refused.
 ///
 /// Not covered: a board whose homing another program began and then paused goes on homing at our
 /// first idle frame, and the first frame of all sets outputs and gripper, as every frame does.

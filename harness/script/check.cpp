@@ -4,9 +4,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
+
+#include "harness/motion/parol6/joint_table.hpp"
+#include "harness/rig/parol6_judge.hpp"
 
 namespace armjig::script {
 namespace {
@@ -112,6 +118,43 @@ std::optional<Diagnostic> check_reach(const Program& program) {
   return Diagnostic{Severity::kWarning, (end + 1)->place, "this is never reached"};
 }
 
+/// The fastest set-point beyond what its joint can do. The commander looks at few of them.
+std::string overspeed(const ScheduledMove& move) {
+  constexpr auto kRanges = parol6::planning::kJointRanges;
+  std::size_t worst = 0;
+  double most = 1;
+  std::int32_t speed = 0;
+  for (const auto& point : move.plan.set_points) {
+    for (std::size_t j = 0; j < kRanges.size(); ++j) {
+      const double share =
+          std::abs(point.speed[j].value) / static_cast<double>(kRanges[j].max_speed.value);
+      if (share <= most) continue;
+      most = share;
+      worst = j;
+      speed = point.speed[j].value;
+    }
+  }
+  if (speed == 0) return {};
+  return fmt::format("j{} is told {} steps/s, it can do {}", worst + 1, speed,
+                     kRanges[worst].max_speed.value);
+}
+
+/// What is odd about a move that was planned.
+std::vector<std::string> doubts_of(const ScheduledMove& move) {
+  std::vector<std::string> found;
+  if (auto text = overspeed(move); !text.empty()) found.push_back(std::move(text));
+  const bool stands = std::ranges::all_of(
+      move.plan.set_points, [&](const auto& point) { return point.position == move.start; });
+  if (stands && !move.plan.stop) {
+    found.push_back(fmt::format("the joints are there already: they are held for {:.2f} s",
+                                0.01 * static_cast<double>(move.plan.set_points.size())));
+  }
+  if (move.plan.turns_long_way) {
+    found.emplace_back("the commander turns the tool the long way round on this line");
+  }
+  return found;
+}
+
 void sort_by_place(std::vector<Diagnostic>& diagnostics) {
   std::ranges::stable_sort(diagnostics, {}, [](const Diagnostic& diagnostic) {
     return std::pair{diagnostic.place.line, diagnostic.place.column};
@@ -144,10 +187,12 @@ std::vector<Diagnostic> check(const Program& program) {
 std::vector<Diagnostic> check(const Program& program, const Schedule& schedule) {
   std::vector<Diagnostic> found;
   for (const auto& move : schedule.moves) {
+    const auto place = program.statements[move.statement].place;
     for (const auto& note : move.plan.singularities) {
-      found.push_back(
-          {Severity::kWarning, program.statements[move.statement].place, describe(note)});
+      found.push_back({Severity::kWarning, place, describe(note)});
     }
+    for (auto& text : doubts_of(move))
+      found.push_back({Severity::kWarning, place, std::move(text)});
   }
   if (schedule.stop) {
     found.push_back(*schedule.stop);
@@ -157,6 +202,44 @@ std::vector<Diagnostic> check(const Program& program, const Schedule& schedule) 
   found.push_back({Severity::kNote, program.statements.back().place,
                    fmt::format("takes {:.2f} s", schedule.seconds())});
   return found;
+}
+
+Inspection inspect(const Program& program, const InterpreterSettings& settings,
+                   const parol6::JointSteps& from) {
+  Inspection result{.schedule = {}, .found = check(program)};
+  const auto is_error = [](const Diagnostic& one) { return one.severity == Severity::kError; };
+  if (std::ranges::any_of(result.found, is_error)) return result;
+  auto planned = schedule(program, settings, from);
+  if (!planned) {
+    result.found.push_back(planned.error());
+    return result;
+  }
+  std::ranges::copy(check(program, *planned), std::back_inserter(result.found));
+  result.schedule = *std::move(planned);
+  return result;
+}
+
+std::optional<Diagnostic> check_guarded(const Program& program, const Schedule& schedule,
+                                        const parol6::JointSteps& from, std::uint8_t homed) {
+  const auto judge = parol6::rig::make_judge();
+  parol6::TelemetryFrame telemetry{
+      .position = from, .homed = homed, .io = parol6::io_flag::kEstopReleased};
+  for (std::size_t i = 0; i < schedule.frames.size(); ++i) {
+    const auto& frame = schedule.frames[i];
+    judge->set_time(Instant{} + i * std::chrono::milliseconds{10});
+    judge->observe(encode(telemetry));
+    auto reason = judge->must_stop();
+    if (!reason) {
+      if (auto refusal = judge->judge(encode(frame), Permissions::all())) reason = refusal->reason;
+    }
+    if (reason) {
+      return Diagnostic{Severity::kError, program.statements[schedule.statements[i]].place,
+                        "the guard would not let it through: " + *reason};
+    }
+    telemetry.position = schedule.positions[i];
+    telemetry.echo = frame.command;
+  }
+  return std::nullopt;
 }
 
 }  // namespace armjig::script

@@ -117,7 +117,8 @@ constexpr std::array kRequirements{
             "nothing.",
             "firmware: the board would obey", occasion::kEstop),
     of_host("parol6.host.go-to-range", Level::kMust,
-            "The positions of a go-to lie within the ranges of the joints.",
+            "The positions of a go-to lie within the ranges of the joints, or on the way back into "
+            "them.",
             "GUI; Python API; firmware: the board knows no limits", occasion::kHomedGoTo),
     of_host("parol6.host.go-to-pace", Level::kMust,
             "A go-to asks of no joint more speed than the known hosts do.",

@@ -30,9 +30,9 @@ constexpr Duration kEffect = 500ms;
 constexpr std::int32_t kNoticeable = 10;
 
 /// The most that either of the known hosts asks for; the GUI's and the Python API's tables differ.
-constexpr std::array<StepsPerSecond, kJointCount> kFastest{
-    StepsPerSecond{15'000}, StepsPerSecond{25'000}, StepsPerSecond{32'000},
-    StepsPerSecond{22'000}, StepsPerSecond{22'000}, StepsPerSecond{27'000}};
+constexpr GoToWay::Limits kFastest{StepsPerSecond{15'000}, StepsPerSecond{25'000},
+                                   StepsPerSecond{32'000}, StepsPerSecond{22'000},
+                                   StepsPerSecond{22'000}, StepsPerSecond{27'000}};
 
 constexpr bool moves(Command command) noexcept {
   return command == Command::kHome || command == Command::kJog || command == Command::kGoTo;
@@ -54,14 +54,11 @@ bool has_speed(const CommandFrame& frame) noexcept {
   return std::ranges::any_of(frame.speed, [](StepsPerSecond speed) { return speed.value != 0; });
 }
 
-/// In steps/s (parol6.goto.law).
-double go_to_speed(Steps position, Steps goal, StepsPerSecond feed) noexcept {
-  return (100.0 * (goal.value - position.value) + feed.value) / 2;
-}
-
 int code(Command command) noexcept { return static_cast<int>(command); }
 
 }  // namespace
+
+Conduct::Conduct(Duration noise) noexcept : noise_{noise}, way_{kFastest, noise} {}
 
 bool Conduct::is_arm_homed() const noexcept { return telemetry_ && is_homed(*telemetry_); }
 
@@ -233,9 +230,11 @@ void Conduct::judge_motion(Instant time, const CommandFrame& frame, const Compla
     complain("parol6.host.idle-speed", "an idle frame came with a speed");
   }
   if (frame.command != Command::kJog) outward_since_.reset();
-  if (!telemetry_ || !is_enabled_ || is_estop_pressed()) return;
+  const bool is_obeyed = telemetry_ && is_enabled_ && !is_estop_pressed();
+  if (frame.command != Command::kGoTo || !is_obeyed || !is_arm_homed()) way_.end();
+  if (!is_obeyed) return;
   if (frame.command == Command::kJog) judge_jog(time, frame, complain);
-  if (frame.command == Command::kGoTo) judge_go_to(frame, complain);
+  if (frame.command == Command::kGoTo) judge_go_to(time, frame, complain);
   judge_held(time, frame, complain);
 }
 
@@ -245,7 +244,8 @@ void Conduct::judge_jog(Instant time, const CommandFrame& frame, const Complain&
     const auto speed = frame.speed[j];
     if (std::abs(speed.value) > kFastest[j].value) {
       complain("parol6.host.jog-pace",
-               fmt::format("j{} was jogged at {} steps/s", j + 1, speed.value));
+               fmt::format("j{} was jogged at {} steps/s, {} is the most of known hosts", j + 1,
+                           speed.value, kFastest[j].value));
     }
     if (is_arm_homed() && kJointBounds[j].forbid(telemetry_->position[j], speed)) {
       leads_out = true;
@@ -264,24 +264,26 @@ void Conduct::judge_jog(Instant time, const CommandFrame& frame, const Complain&
   }
 }
 
-void Conduct::judge_go_to(const CommandFrame& frame, const Complain& complain) const {
+void Conduct::judge_go_to(Instant time, const CommandFrame& frame, const Complain& complain) {
   if (!is_arm_homed()) return;
   constexpr Steps kRounding{1};  // the two hosts round their limits differently
+  std::array<bool, kJointCount> leads_out{};
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto goal = frame.position[j];
-    const auto& bounds = kJointBounds[j];
-    if (goal < bounds.lower - kRounding || goal > bounds.upper + kRounding) {
-      complain("parol6.host.go-to-range",
-               fmt::format("j{} was sent to {}, from {} to {} is its range", j + 1, goal.value,
-                           bounds.lower.value, bounds.upper.value));
-      continue;
-    }
-    const auto speed = go_to_speed(telemetry_->position[j], goal, frame.speed[j]);
-    if (std::abs(speed) > kFastest[j].value) {
-      complain("parol6.host.go-to-pace",
-               fmt::format("j{} was sent {} steps away, which is {:.0f} steps/s", j + 1,
-                           goal.value - telemetry_->position[j].value, speed));
-    }
+    auto bounds = kJointBounds[j];
+    bounds.lower = bounds.lower - kRounding;
+    bounds.upper = bounds.upper + kRounding;
+    leads_out[j] = way_.leads_out(j, bounds, frame.position[j], telemetry_->position[j]);
+    if (!leads_out[j]) continue;
+    complain("parol6.host.go-to-range",
+             fmt::format("j{} was sent to {}, from {} to {} is its range", j + 1,
+                         frame.position[j].value, kJointBounds[j].lower.value,
+                         kJointBounds[j].upper.value));
+  }
+  for (const auto& excess : way_.go_on(time, frame, telemetry_->position)) {
+    if (leads_out[excess.joint]) continue;
+    complain("parol6.host.go-to-pace",
+             fmt::format("j{} was to {}, {} steps/s is the most of known hosts", excess.joint + 1,
+                         describe(excess), kFastest[excess.joint].value));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "conformance/program_checker.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
+#include "harness/wire/parol6/go_to_way.hpp"
 
 namespace armjig::parol6::programs {
 
@@ -15,7 +16,7 @@ namespace armjig::parol6::programs {
 class Conduct {
  public:
   /// `noise`: of the link; with any, frames may come together that were sent one by one.
-  explicit Conduct(Duration noise) noexcept : noise_{noise} {}
+  explicit Conduct(Duration noise) noexcept;
 
   /// A frame of the program. Of several at one time the board acts on the last one only.
   void command(Instant time, const CommandFrame& frame, const Complain& complain);
@@ -52,7 +53,7 @@ class Conduct {
   void judge_motion(Instant time, const CommandFrame& frame, const Complain& complain);
   void judge_held(Instant time, const CommandFrame& frame, const Complain& complain);
   void judge_jog(Instant time, const CommandFrame& frame, const Complain& complain);
-  void judge_go_to(const CommandFrame& frame, const Complain& complain) const;
+  void judge_go_to(Instant time, const CommandFrame& frame, const Complain& complain);
   [[nodiscard]] bool is_arm_homed() const noexcept;
   [[nodiscard]] bool is_estop_pressed() const noexcept { return pressed_since_.has_value(); }
   [[nodiscard]] bool has_joints_move() const noexcept;
@@ -75,6 +76,7 @@ class Conduct {
   std::optional<Instant> home_since_;     ///< home commands, one after the other
   std::optional<Instant> outward_since_;  ///< jogs that lead out of a range
   std::optional<Held> held_;
+  GoToWay way_;
 };
 
 }  // namespace armjig::parol6::programs

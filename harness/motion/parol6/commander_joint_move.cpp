@@ -147,6 +147,8 @@ tl::expected<Plan, Refusal> plan_at_pace(const CommanderTarget& target, const Jo
   const auto way_of = [&](std::size_t j) {
     return static_cast<double>(target.steps[j].value) - start[j].value;
   };
+  // The time of the others is a division by the leading joint's, which may have no step to go.
+  if (way_of(leading) == 0 && target.steps != start) return impossible(0);
   const double top = kJointRanges[leading].max_speed.value;
   const double v = std::trunc(kMinSpeed.value + speed / 100 * (top - kMinSpeed.value));
   const double a = kMinAcceleration + acceleration / 100 * (kMaxAcceleration - kMinAcceleration);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 
 #include "harness/arm/models.hpp"
@@ -83,8 +84,15 @@ tl::expected<Plan, Refusal> plan_commander_line(const LineTarget& target, const 
   const auto from = forward(arm, joints);
   const motion::PoseLine line{from, target.from(from), motion::Turn::kUncorrected};
 
+  // Of a turn so close to a whole one, the quaternions between keep fewer than ten digits.
+  constexpr double kNearlyWhole = 2e-3;
+  if (line.turn() > 2 * std::numbers::pi - kNearlyWhole) {
+    return tl::unexpected{Refusal{.reason = Refusal::Reason::kNoTurn}};
+  }
+
   Plan plan{
       .tracking = tracking, .law = timing.law.value_or(Law::kTrapezoid), .duration = duration};
+  plan.turns_long_way = line.turn() > std::numbers::pi;
   for (std::size_t k = 1; k + 1 <= count && !plan.stop; ++k) {
     const double t = kTick * static_cast<double>(k);
     const auto now = commander_ik(arm, line.at(commander_path_share(plan.law, t, last)), joints);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/motion/parol6/planner.hpp"
 
+#include <cstdlib>
+#include <optional>
+
 #include "harness/arm/models.hpp"
 #include "harness/motion/parol6/checks.hpp"
 #include "harness/motion/parol6/commander_ik.hpp"
@@ -88,9 +91,7 @@ Planned plan_line(const Move& move, const JointSteps& start, const PlannerSettin
              : plan_commander_line(target, start, move.timing, move.tracking);
 }
 
-}  // namespace
-
-Planned plan(const Move& move, const JointSteps& start, const PlannerSettings& settings) {
+Planned plan_unchecked(const Move& move, const JointSteps& start, const PlannerSettings& settings) {
   switch (move.kind) {
     case Move::Kind::kJoint:
       return plan_joints(move, start, settings);
@@ -102,6 +103,31 @@ Planned plan(const Move& move, const JointSteps& start, const PlannerSettings& s
       break;
   }
   return plan_line(move, start, settings);
+}
+
+/// Numbers that were cut to what a frame holds. The commander's are masked: a speed beyond becomes
+/// another one, the other way round perhaps.
+std::optional<Refusal> beyond_frame(const Plan& plan) {
+  const auto is_beyond = [](std::int32_t value) { return std::abs(value) >= kMostSteps; };
+  for (std::size_t i = 0; i < plan.set_points.size(); ++i) {
+    const auto& [position, speed] = plan.set_points[i];
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      if (!is_beyond(position[j].value) && !is_beyond(speed[j].value)) continue;
+      return Refusal{.reason = Refusal::Reason::kBeyondFrame,
+                     .joint = j,
+                     .time = kTick * static_cast<double>(i + 1)};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Planned plan(const Move& move, const JointSteps& start, const PlannerSettings& settings) {
+  auto planned = plan_unchecked(move, start, settings);
+  if (!planned) return planned;
+  if (const auto refusal = beyond_frame(*planned)) return tl::unexpected{*refusal};
+  return planned;
 }
 
 }  // namespace armjig::parol6::planning

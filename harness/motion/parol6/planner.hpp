@@ -99,6 +99,8 @@ struct Refusal {
     kSignFlip,             ///< the commander's guard against a joint that jumps from + to -
     kImpossibleDuration,   ///< `value` in seconds
     kPercentOutOfRange,    ///< `value` in percent
+    kBeyondFrame,          ///< a position or speed does not fit into a frame
+    kNoTurn,               ///< the commander's turn of the tool is a division by nearly zero
   };
   Reason reason{};
   std::optional<std::size_t> joint{};  ///< from 0
@@ -137,6 +139,7 @@ struct Plan {
   std::size_t leading_joint{};  ///< from 0: the longest way
   /// Of lines only, in order.
   std::vector<SingularityNote> singularities;
+  bool turns_long_way{};  ///< by more than 180 deg, on a line of the commander's
   /// The move ends early, behind the last of `set_points`, and not at its target.
   std::optional<Refusal> stop;
 };

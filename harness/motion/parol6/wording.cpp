@@ -54,6 +54,12 @@ std::string describe(const Refusal& refusal) {
       return fmt::format("a move cannot take {} s", value);
     case Refusal::Reason::kPercentOutOfRange:
       return fmt::format("{} is not between 0 and 100 %", value);
+    case Refusal::Reason::kBeyondFrame:
+      return fmt::format("{} would be told more{} than the 24 bits of a frame hold",
+                         name_of(refusal), moment(time));
+    case Refusal::Reason::kNoTurn:
+      return "the commander would turn the tool once round to where it is, and loses its "
+             "orientation on the way";
   }
   return {};
 }

@@ -177,6 +177,11 @@ INSTANTIATE_TEST_SUITE_P(
         Recorded{"powerup_dummy_100hz", {}}, Recorded{"powerup_link_up_late", {}},
         Recorded{"gripper_can_burst_a", {}},
         Recorded{"planner_quintic_speed_only_a", {"parol6.host.looks-first"}},
+        Recorded{"planner_trap_speed_pos_a",
+                 {"parol6.host.looks-first", "parol6.host.go-to-unhomed"}},
+        Recorded{
+            "planner_home_then_moves_a",
+            {"parol6.host.looks-first", "parol6.host.rate-slow", "parol6.host.gripper-activated"}},
         Recorded{"jog_single_joints_a", {"parol6.host.looks-first"}},
         Recorded{"dummy_with_speeds_a", {"parol6.host.idle-speed"}},
         Recorded{"outputs_sweep_a", {"parol6.host.spare-outputs"}},

@@ -190,5 +190,36 @@ TEST(CommanderLine, StopsWhereAJointChangesItsSign) {
   EXPECT_LT(result->set_points.size(), 359U);
 }
 
+/// A line from the seed's pose to where the tool has turned about its own z axis.
+tl::expected<Plan, Refusal> turned(double degrees) {
+  const Move move{.kind = Move::Kind::kToolLine,
+                  .target = {0, 0, 0, 0, 0, degrees},
+                  .timing = {.duration = 4.0}};
+  return plan(move, standby(), kCommander);
+}
+
+TEST(CommanderLine, TellsOfTheLongWayRoundAndRefusesAWholeTurn) {
+  bool has_turned_long = false;
+  for (int degrees = -170; degrees <= 170; degrees += 5) {
+    const auto planned = turned(degrees);
+    if (planned && planned->turns_long_way) has_turned_long = true;
+    EXPECT_TRUE(planned || planned.error().reason == Refusal::Reason::kNoTurn) << degrees;
+  }
+  EXPECT_TRUE(has_turned_long);
+}
+
+TEST(CommanderJointMove, RefusesNumbersThatNoFrameHolds) {
+  const Move move{.kind = Move::Kind::kJoint,
+                  .target = {1000, -90, 180, 0, 0, 180},
+                  .timing = {.duration = 0.03}};
+  auto settings = kCommander;
+  settings.limits = LimitCheck::kIgnored;
+  const auto planned = plan(move, standby(), settings);
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().reason, Refusal::Reason::kBeyondFrame);
+  EXPECT_EQ(describe(planned.error()),
+            "j1 would be told more at 0.01 s than the 24 bits of a frame hold");
+}
+
 }  // namespace
 }  // namespace armjig::parol6::planning

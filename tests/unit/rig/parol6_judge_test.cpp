@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <initializer_list>
 
 #include "harness/wire/parol6/firmware_receiver.hpp"
@@ -13,6 +14,7 @@
 namespace armjig::parol6::rig {
 namespace {
 
+using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
 Permissions allowing(std::initializer_list<Hazard> hazards) {
@@ -335,6 +337,64 @@ TEST(Parol6Judge, GoToIsNotFasterThanItsJointMayBe) {
   EXPECT_FALSE(court.judge(go_to(goal)));
   goal[0] = kMiddle[0] + Steps{131};
   EXPECT_THAT(court.judge(go_to(goal))->reason, HasSubstr("smaller pieces"));
+}
+
+/// Leads joint `j` away from the middle by `step` in each period and back, while telemetry shows
+/// the arm where the frame of `delay` periods ago wanted it. The first refusal or stop.
+std::optional<std::string> lead(std::size_t j, int step, int delay) {
+  constexpr int kThere = 40;
+  Court court{Permissions::all()};
+  const auto place = [&](int period) {
+    auto goal = kMiddle;
+    const int gone = period <= kThere ? period : std::max(0, 2 * kThere - period);
+    goal[j] = goal[j] + Steps{step * std::max(0, gone)};
+    return goal;
+  };
+  for (int i = 0; i < 3 * kThere; ++i) {
+    court->set_time(at(i * 10ms));
+    court.answer(homed_at(place(i - delay), i < delay ? Command::kIdle : Command::kGoTo));
+    if (auto reason = court->must_stop()) return reason;
+    if (const auto refusal = court.judge(go_to(place(i)))) return refusal->reason;
+  }
+  return std::nullopt;
+}
+
+TEST(Parol6Judge, EachJointMayBeLedAtItsTopSpeedWhateverTheAgeOfTelemetry) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto step = kJointBounds[j].max_speed.value / 100;
+    for (const int delay : {1, 2, 3, 5, 9}) {
+      EXPECT_EQ(lead(j, step / 2, delay), std::nullopt) << "j" << j + 1 << ", " << delay;
+      EXPECT_EQ(lead(j, j == 3 || j == 4 ? 150 : step, delay), std::nullopt)
+          << "j" << j + 1 << ", " << delay;
+    }
+  }
+}
+
+TEST(Parol6Judge, NoJointMayBeLedFasterWhateverTheAgeOfTelemetry) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto step = kJointBounds[j].max_speed.value / 100 * 5 / 4;
+    EXPECT_THAT(lead(j, step, 1).value_or(""), HasSubstr("smaller pieces")) << j;
+    EXPECT_THAT(lead(j, step, 5).value_or(""), HasSubstr("smaller pieces")) << j;
+  }
+}
+
+TEST(Parol6Judge, AnArmThatDoesNotFollowIsStopped) {
+  EXPECT_THAT(lead(0, 65, 1000).value_or(""), HasSubstr("j1 is at 0 steps and does not follow"));
+}
+
+TEST(Parol6Judge, AnArmBeyondItsBoundMayComeBackButGoNoFurther) {
+  auto outside = kMiddle;
+  outside[0] = kJointBounds[0].upper + Steps{200};
+  Court court{Permissions::all()};
+  court.answer(homed_at(outside, Command::kIdle));
+  auto further = outside;
+  further[0] = further[0] + Steps{1};
+  EXPECT_TRUE(court.judge(go_to(further)));
+  for (int i = 0; i < 10; ++i) {
+    court->set_time(at(i * 10ms));
+    outside[0] = outside[0] - Steps{50};
+    EXPECT_FALSE(court.judge(go_to(outside))) << i;
+  }
 }
 
 // The emergency stop, and being out of sight.

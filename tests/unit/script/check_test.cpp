@@ -79,5 +79,26 @@ TEST(Check, SaysHowLongItTakes) {
   EXPECT_EQ(describe(found.front(), "p"), "p:3:1: note: takes 1.50 s");
 }
 
+std::vector<std::string> commander_says(std::string_view lines) {
+  const auto program = test::program_of(lines, Dialect::kCommander);
+  std::vector<std::string> texts;
+  for (const auto& one : inspect(program, {}, test::kStandby).found) {
+    if (one.severity != Severity::kNote) texts.push_back(one.text);
+  }
+  return texts;
+}
+
+TEST(Check, WarnsOfWhatTheCommanderDoesNotLookAt) {
+  EXPECT_THAT(commander_says("MoveJoint(90,-90,180,0,0,180,t=4)\nMoveJoint(90,-90,180,0,0,180)"),
+              ElementsAre(HasSubstr("the joints are there already")));
+  EXPECT_THAT(commander_says("MoveJoint(0,-90,180,0,0,180,t=0.6)"),
+              ElementsAre(HasSubstr("it can do 6500")));
+}
+
+TEST(Check, SaysAllErrorsAtOnceAndWarningsBesideThem) {
+  EXPECT_THAT(commander_says("Home()\nGripper(1,2,3)\nDelay(x)"),
+              ElementsAre(HasSubstr("hangs"), HasSubstr("skips"), HasSubstr("no number")));
+}
+
 }  // namespace
 }  // namespace armjig::script

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/script/program_run.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -17,8 +19,12 @@
 #include "harness/arm/arm.hpp"
 #include "harness/arm/models.hpp"
 #include "harness/drive/parol6/drive_loop.hpp"
+#include "harness/link/impaired_stream.hpp"
 #include "harness/link/memory_stream.hpp"
 #include "harness/motion/parol6/conversion.hpp"
+#include "harness/rig/guarded_ports.hpp"
+#include "harness/rig/parol6_judge.hpp"
+#include "harness/script/check.hpp"
 #include "harness/script/run_output.hpp"
 #include "harness/script/schedule.hpp"
 #include "tests/unit/report/validity.hpp"
@@ -177,6 +183,60 @@ INSTANTIATE_TEST_SUITE_P(Lines, StraightLine,
                                            "MoveCartRelTRF(-60, 20, 10, 0, 0, 0, t=3, poly)",
                                            "MoveCartRelTRF(0, 0, 0, 20, 0, 0, t=2)",
                                            "MoveCartRelTRF(-20, 0, 0, 10, -10, 5)"));
+
+/// What ends a program on an arm behind a guard, whose telemetry comes late; empty if nothing does.
+std::string guarded_end(std::string_view lines, std::string_view impairment) {
+  using parol6::emulation::Arm;
+  auto link = std::make_unique<ImpairedStream>(std::make_unique<MemoryStream<Arm>>(Arm{}),
+                                               parse_impairment(impairment).value());
+  auto guarded =
+      GuardedStream::guard(std::move(link), parol6::rig::make_judge(), Permissions::all());
+  auto& port = **guarded;
+  parol6::drive::Drive drive;
+  parol6::drive::DriveLoop loop{port, drive};
+  const auto go_through = [&](Activity& activity) -> std::string {
+    for (const auto end = port.now() + 5min; port.now() < end;) {
+      if (!loop.cycle()) return port.last_refusal().value_or(Refusal{}).reason;
+      if (!drive.telemetry()) continue;
+      const auto ending = activity.step(drive, port.now(), drive.take_events());
+      if (ending) return ending->is_success ? "" : ending->text;
+    }
+    return "it takes too long";
+  };
+  const auto homing = parol6::drive::begin_home(drive);
+  if (auto end = go_through(**homing); !end.empty()) return end;
+  const auto program = test::program_of(lines, Dialect::kDocumented);
+  ProgramRun run{program, {}};
+  return go_through(run);
+}
+
+TEST(ProgramRun, AtTopSpeedPassesTheGuardHoweverOldTelemetryIs) {
+  const auto* const lines =
+      "MoveJoint(0, -90, 180, 0, 0, 180, t=4)\n"
+      "MoveJoint(90, -90, 180, 60, 0, 180, v=100, a=100)\nMoveJoint(0, -90, 180, 0, 0, 20, t=5)";
+  for (const auto* late : {"in.delay=1ms", "in.delay=12ms", "in.delay=35ms", "in.delay=60ms",
+                           "in.delay=uniform(0ms,25ms)"}) {
+    EXPECT_EQ(guarded_end(lines, late), "") << late;
+  }
+}
+
+/// What the guard says to a program before anything of it is sent.
+std::string guard_says(std::string_view lines, Dialect dialect, std::uint8_t homed = 0xFF) {
+  const auto program = test::program_of(lines, dialect);
+  const auto found = check_guarded(program, test::schedule_of(program), test::kStandby, homed);
+  return found ? fmt::format("{}: {}", found->place.line, found->text) : "";
+}
+
+TEST(ProgramRun, IsRefusedBeforeItBeginsIfTheGuardWouldEndIt) {
+  constexpr auto kDocumented = Dialect::kDocumented;
+  EXPECT_EQ(guard_says("MoveJoint(0, -90, 180, 0, 0, 180, v=100, a=100)", kDocumented), "");
+  EXPECT_THAT(guard_says("MoveJoint(0, -90, 180, 0, 0, 180, t=4)", kDocumented, 0),
+              HasSubstr("2: the guard would not let it through: go-to needs a homed arm"));
+  EXPECT_THAT(guard_says("Delay(1)\nMoveJoint(0, -90, 180, 0, 0, 180, t=4, speed)", kDocumented),
+              HasSubstr("3: the guard would not let it through: j1 may jog at most"));
+  EXPECT_THAT(guard_says("MoveJoint(0,-90,180,0,0,180,t=0.6)", Dialect::kCommander),
+              HasSubstr("smaller pieces"));
+}
 
 TEST(ProgramRun, SaysHowFarItIs) {
   const auto program = test::program_of("Delay(0.1)\nDummy()", Dialect::kDocumented);

@@ -16,6 +16,7 @@
 #include "emulators/parol6/arm.hpp"
 #include "harness/drive/parol6/drive.hpp"
 #include "harness/wire/parol6/readings.hpp"
+#include "tests/unit/script/programs.hpp"
 #include "tests/unit/support/bytes.hpp"
 
 namespace armjig::parol6::programs {
@@ -538,6 +539,60 @@ TEST(HostChecker, FindsNothingWrongWithOurOwnDriver) {
   ASSERT_TRUE(drive.enable());
   program.run(drive, 100ms);
   EXPECT_THAT(program.broken(), testing::IsEmpty());
+}
+
+/// What a script breaks from standby on, as the vendor's program sends it: a frame each 10 ms.
+std::set<std::string> broken_by_script(std::string_view lines) {
+  const auto script = script::test::program_of(lines, script::Dialect::kCommander);
+  Program program;
+  home(program);
+  script::Interpreter interpreter{script, {}};
+  for (;;) {
+    auto frame = interpreter.next(program.telemetry.position);
+    if (!frame || !*frame) break;
+    (*frame)->gripper = {};
+    program.cycle(**frame);
+  }
+  program.hold(idle(), 50ms);
+  return program.broken();
+}
+
+TEST(HostChecker, FindsNothingWrongWithTheVendorsScriptsPlayedOnTime) {
+  for (const auto* lines : {"MoveJoint(0,-90,180,0,0,180,t=4)\nMoveJoint(90,-90,180,0,0,180,t=4)",
+                            "MoveJoint(0,-90,180,60,60,100,v=100,a=100)\n"
+                            "MoveJoint(90,-60,200,-60,-60,300,v=100,a=100)\n"
+                            "MoveJoint(90,-90,180,0,0,20,v=100,a=100)",
+                            "MoveJoint(-20,-90,180,0,0,180,t=3.3,trap)"}) {
+    EXPECT_THAT(broken_by_script(lines), testing::IsEmpty()) << lines;
+  }
+}
+
+TEST(HostChecker, FindsTheVendorsScriptsTooFastThatAre) {
+  for (const auto* lines :
+       {"MoveJoint(0,-90,180,0,0,180,t=0.6)", "MoveJoint(90,-90,180,0,0,20,t=1.2,trap)",
+        "MoveJoint(90,-90,180,80,0,180,t=0.4)"}) {
+    EXPECT_THAT(broken_by_script(lines), testing::Contains("parol6.host.go-to-pace")) << lines;
+  }
+}
+
+TEST(HostChecker, LetsAnArmComeBackFromOutsideItsRange) {
+  Program program;
+  home(program);
+  walk_j1(program, 14'000);
+  program.hold(with(Command::kJog, {1500}), 80ms);
+  program.hold(idle(), 50ms);
+  ASSERT_GT(program.telemetry.position[0].value, 14'050);
+  walk_j1(program, 13'900);
+  EXPECT_THAT(program.broken(), testing::IsEmpty());
+}
+
+TEST(HostChecker, NamesTheLimitOfAJog) {
+  const auto checker = program_check().make({});
+  checker->from_device(at(0ms), encode(TelemetryFrame{.homed = 0xFF, .io = 0xFF}));
+  checker->to_device(at(1ms), encode(with(Command::kJog, {15'001})));
+  const auto found = checker->take_offences();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].what, "j1 was jogged at 15001 steps/s, 15000 is the most of known hosts");
 }
 
 TEST(HostChecker, FindsNothingWrongWithADriverThatObeysTheEmergencyStop) {
