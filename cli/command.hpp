@@ -21,10 +21,11 @@ enum class Exit : int {
   kPassed = 0,    ///< at least one thing ran, all passed or deviated as known
   kFindings = 1,  ///< something failed or differs
   kUsage = 2,     ///< wrong arguments or unreadable input
-  kRig = 3,       ///< the target is absent, busy, forbidden or silent
+  kRig = 3,       ///< the target is absent, busy, forbidden or silent; results cannot be written
   kNothing = 4,   ///< nothing was selected or nothing ran
   kBug = 70,      ///< ours
-  kInterrupted = 130,
+  kInterrupted = 130,  ///< by Ctrl-C; by another signal, 128 and its number
+  kReaderGone = 141,   ///< of standard output
 };
 
 /// What a subcommand does once its arguments are parsed.

@@ -17,6 +17,7 @@
 #include "cli/device.hpp"
 #include "cli/missed_time.hpp"
 #include "cli/report_files.hpp"
+#include "cli/signals.hpp"
 #include "cli/target_options.hpp"
 #include "cli/terminal.hpp"
 #include "conformance/run.hpp"
@@ -174,7 +175,17 @@ Exit run(const Device& device, const Suite& suite, Options options) {
   if (how->target.is_emulated() && !names_profile && options.run.profile != Profile::kFirmware) {
     how->target.options["profile"] = options.profile;
   }
-  const auto bench = open_bench(device, *how);
+  const auto files = ReportOutputs::open(options.files);
+  if (!files) return report(files.error());
+  const Signals signals;
+  bool is_running = true;
+  const MustStop must_stop = [&] {
+    const bool is_in_vain = files->is_empty() && is_standard_output_lost();
+    return is_running && (signals.has_come() || is_in_vain);
+  };
+  how->must_stop = must_stop;
+  options.run.must_stop = must_stop;
+  auto bench = open_bench(device, *how);
   if (!bench) return report(bench.error());
   options.run.permissions = how->target.is_emulated() ? Permissions::all() : how->permissions;
   options.run.target = how->target.text;
@@ -190,15 +201,16 @@ Exit run(const Device& device, const Suite& suite, Options options) {
     fmt::print("{}", line_of(row, style));
     std::fflush(stdout);
   });
+  is_running = false;
+  bench->reset();  // an arm that moves stands before anything else is done
   result.started = started;
+  if (signals.has_come()) result.facts.emplace_back("interrupted", "not every case was run");
   if (how->impairment) result.facts.emplace_back("impairment", to_string(*how->impairment));
   fmt::print("{}\n", counts_line(result, style));
   print_skipped(result);
   fmt::print("{}", failures_text(result, style));
-  if (const auto written = write_files(result, options.files); !written) {
-    return report(written.error());
-  }
-  return static_cast<Exit>(conclusion_of(result));
+  files->write(result);
+  return signals.has_come() ? signals.exit() : static_cast<Exit>(conclusion_of(result));
 }
 
 Exit conformance(Devices devices, Options options) {

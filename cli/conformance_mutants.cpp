@@ -12,6 +12,7 @@
 #include "cli/choice.hpp"
 #include "cli/device.hpp"
 #include "cli/report_files.hpp"
+#include "cli/signals.hpp"
 #include "cli/terminal.hpp"
 #include "conformance/mutation.hpp"
 
@@ -48,9 +49,15 @@ Exit list_mutants(const MutantsEntry& entry, Profile profile, const std::string&
   return Exit::kNothing;
 }
 
-Exit run(const Device& device, const MutantsEntry& entry, const Options& options) {
+Exit run(const Device& device, const MutantsEntry& entry, Options options) {
+  const auto files = ReportOutputs::open(options.files);
+  if (!files) return report(files.error());
   const auto suite = device.suite();
   const auto open = [&device](const RigOptions& how) { return open_bench(device, how); };
+  const Signals signals;
+  options.run.must_stop = [&signals, &files] {
+    return signals.has_come() || (files->is_empty() && is_standard_output_lost());
+  };
   const auto result = run_mutants(suite, entry, open, options.run);
   if (!result) return report(result.error());
   if (result->fates.empty()) {
@@ -58,17 +65,20 @@ Exit run(const Device& device, const MutantsEntry& entry, const Options& options
                   "it selects no mutant; --list shows them"});
     return Exit::kNothing;
   }
-  const auto summary = to_report(*result, suite, options.run);
+  auto summary = to_report(*result, suite, options.run);
   const auto style = style_of(options.colour, stdout);
+  if (const auto skipped = summary.count(Verdict::kSkipped); skipped > 0) {
+    fmt::print("interrupted: {} mutants were not tried\n", skipped);
+  }
   for (const auto& row : summary.rows) {
-    if (row.verdict != Verdict::kPass) fmt::print("{}", to_text(row, style));
+    if (row.verdict != Verdict::kPass && row.verdict != Verdict::kSkipped) {
+      fmt::print("{}", to_text(row, style));
+    }
   }
   for (const auto& section : summary.sections) fmt::print("\n{}", to_text(section, style));
   fmt::print("\n{}\n", counts_line(summary, style));
-  if (const auto written = write_files(summary, options.files); !written) {
-    return report(written.error());
-  }
-  return static_cast<Exit>(conclusion_of(summary));
+  files->write(summary);
+  return signals.has_come() ? signals.exit() : static_cast<Exit>(conclusion_of(summary));
 }
 
 Exit mutants(Devices devices, Options options) {
@@ -78,7 +88,7 @@ Exit mutants(Devices devices, Options options) {
   options.run.profile = options.profile == "documented" ? Profile::kDocumented : Profile::kFirmware;
   if (options.list) return list_mutants(entry, options.run.profile, options.run.filter);
   options.run.proves_requirements = options.run.filter.empty();
-  return run(**device, entry, options);
+  return run(**device, entry, std::move(options));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 
 #include "cli/device.hpp"
 #include "cli/line_editor.hpp"
+#include "cli/outputs.hpp"
 #include "cli/pace.hpp"
 #include "cli/screen.hpp"
 #include "cli/signals.hpp"
@@ -95,7 +96,10 @@ class PipeSession {
     if (const auto done = run_commands(); !done) return report(done.error());
     line_ = 0;
     if (const auto left = console_->leave(); !left) return report(left.error());
-    if (is_interrupted_) return Exit::kInterrupted;
+    if (is_interrupted()) {
+      fmt::print(stderr, "armjig: interrupted; no line of the input was taken any more\n");
+      return signals_.has_come() ? signals_.exit() : exit_;
+    }
     return has_run_ ? exit_ : Exit::kNothing;
   }
 
@@ -148,7 +152,7 @@ class PipeSession {
   }
 
   bool is_interrupted() {
-    is_interrupted_ = is_interrupted_ || signals_.take_interrupt() || signals_.must_end();
+    is_interrupted_ = is_interrupted_ || signals_.has_come() || is_standard_output_lost();
     return is_interrupted_;
   }
 

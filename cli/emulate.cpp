@@ -116,13 +116,11 @@ Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) 
 /// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
 constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
 
-Exit conclude(ProgramCheck& check, const Options& options) {
+Exit conclude(ProgramCheck& check, const Options& options, const ReportOutputs& files) {
   const auto result = check.finish();
   fmt::print("{}\n", options.wants_json ? to_json(result)
                                         : to_text(result, style_of(options.colour, stdout)));
-  if (const auto written = write_files(result, options.files); !written) {
-    return report(written.error());
-  }
+  files.write(result);
   return static_cast<Exit>(conclusion_of(result));
 }
 
@@ -207,6 +205,10 @@ Exit emulate(Devices devices, const Options& options) {
     if (!made) return report(made.error());
     check = *std::move(made);
   }
+  const auto claimed = claim_standard_output(options.wants_json ? "--json" : "");
+  if (!claimed) return report(claimed.error());
+  const auto files = ReportOutputs::open(options.files);
+  if (!files) return report(files.error());
   const auto served = std::visit(
       [&](const auto& kind) -> Outcome<void> {
         auto hosted = cli::emulate(kind, *settings, options.device);
@@ -215,7 +217,7 @@ Exit emulate(Devices devices, const Options& options) {
       },
       device.port);
   if (!served) return report(served.error());
-  return check ? conclude(*check, options) : Exit::kPassed;
+  return check ? conclude(*check, options, *files) : Exit::kPassed;
 }
 
 void add_check(CLI::App& command, Options& options) {

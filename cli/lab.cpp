@@ -53,11 +53,10 @@ struct Options {
 };
 
 /// Standard output is the program's.
-Exit conclude(const Report& result, const Options& options, Exit of_program) {
+Exit conclude(const Report& result, const Options& options, const ReportOutputs& files,
+              Exit of_program) {
   fmt::print(stderr, "{}\n", to_text(result, style_of(options.colour, stderr)));
-  if (const auto written = write_files(result, options.files); !written) {
-    return report(written.error());
-  }
+  files.write(result);
   return of_program == Exit::kPassed ? static_cast<Exit>(conclusion_of(result)) : of_program;
 }
 
@@ -91,6 +90,10 @@ Exit exec(Devices devices, const Options& options) {
     if (!made) return report(made.error());
     check = *std::move(made);
   }
+  const auto claimed = claim_standard_output("PROGRAM");
+  if (!claimed) return report(claimed.error());
+  const auto files = ReportOutputs::open(options.files);
+  if (!files) return report(files.error());
   auto hosted = *std::move(bus);
   if (check) hosted = check->watch(std::move(hosted));
   const auto i2c = VirtualI2c::open(std::move(hosted), options.number);
@@ -98,7 +101,7 @@ Exit exec(Devices devices, const Options& options) {
   const auto code = run_program(options.program, i2c->environment());
   if (!code) return report(code.error());
   const auto ended = static_cast<Exit>(*code);
-  return check ? conclude(check->finish(), options, ended) : ended;
+  return check ? conclude(check->finish(), options, *files, ended) : ended;
 }
 
 }  // namespace

@@ -57,7 +57,8 @@ class LineEditor::Editor {
   Editor(Complete complete, std::string history_path)
       : complete_{std::move(complete)},
         history_path_{std::move(history_path)},
-        line_{::el_init("armjig", stdin, stdout, stderr)},
+        line_{::el_init_fd("armjig", stdin, stdout, stderr, STDIN_FILENO, STDOUT_FILENO,
+                           STDERR_FILENO)},
         history_{::history_init()} {
     ::el_set(line_, EL_CLIENTDATA, this);
     ::el_set(line_, EL_PROMPT, &Editor::prompt_of);

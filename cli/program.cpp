@@ -8,6 +8,7 @@
 #include <exception>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@
 #include "cli/candidates.hpp"
 #include "cli/choice.hpp"
 #include "cli/device.hpp"
+#include "cli/outputs.hpp"
 #include "cli/terminal.hpp"
 #include "harness/core/version.hpp"
 
@@ -39,7 +41,8 @@ constexpr auto kDescription =
     "  armjig console DEVICE --target emulated:       drive it by hand\n";
 
 constexpr auto kFooter =
-    "Exit codes: 0 passed, 1 findings, 2 usage, 3 target or link, 4 nothing ran, 70 our bug, 130 "
+    "Exit codes: 0 passed, 1 findings, 2 usage, 3 target, link or output, 4 nothing ran, 70 our "
+    "bug, 130 "
     "interrupted.\n"
     "'armjig SUBCOMMAND --help' has examples.";
 
@@ -86,7 +89,9 @@ std::string complaint_of(const CLI::App& command, const CLI::ParseError& error) 
 Exit exit_of(const CLI::App& app, const CLI::ParseError& error) {
   const bool is_help = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
   if (is_help) {
-    app.exit(error);
+    std::ostringstream text;
+    app.exit(error, text, text);
+    fmt::print("{}", text.str());
     return Exit::kPassed;
   }
   const auto& command = chosen_of(app);
@@ -192,12 +197,14 @@ std::string with_example(std::string text, Devices devices) {
 }
 
 int run_program(int argc, char** argv, Devices devices) {
+  Outputs outputs;
+  auto exit = Exit::kBug;
   try {
-    return static_cast<int>(run(argc, argv, devices));
+    exit = run(argc, argv, devices);
   } catch (const std::exception& error) {
     fmt::print(stderr, "armjig: internal error: {}; please report it\n", error.what());
-    return static_cast<int>(Exit::kBug);
   }
+  return static_cast<int>(outputs.finish(exit));
 }
 
 }  // namespace armjig::cli

@@ -21,4 +21,20 @@ std::vector<CLI::Option*> add_report_files(CLI::App& command, ReportFiles& files
   return added;
 }
 
+Outcome<ReportOutputs> ReportOutputs::open(const ReportFiles& files) {
+  ReportOutputs outputs;
+  for (const auto& form : report_forms()) {
+    const auto path = files.find(form.name);
+    if (path == files.end() || path->second.empty()) continue;
+    auto opened = open_output(fmt::format("--{}", form.name), path->second);
+    if (!opened) return tl::unexpected{opened.error()};
+    outputs.files_.emplace_back(&form, *std::move(opened));
+  }
+  return outputs;
+}
+
+void ReportOutputs::write(const Report& report) const {
+  for (const auto& [form, file] : files_) file->write(form->write(report));
+}
+
 }  // namespace armjig::cli

@@ -8,8 +8,10 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 volatile std::sig_atomic_t ended = 0;
+volatile std::sig_atomic_t last = 0;  // its number
 
 extern "C" void on_signal(int number) {
+  last = number;
   if (number == SIGINT) {
     interrupted = 1;
   } else {
@@ -22,6 +24,7 @@ extern "C" void on_signal(int number) {
 Signals::Signals() {
   interrupted = 0;
   ended = 0;
+  last = 0;
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     struct sigaction action{};
     action.sa_handler = kSignals[i] == SIGTSTP ? SIG_IGN : on_signal;
@@ -40,5 +43,9 @@ bool Signals::take_interrupt() noexcept {
 }
 
 bool Signals::must_end() const noexcept { return ended != 0; }
+
+bool Signals::has_come() const noexcept { return last != 0; }
+
+Exit Signals::exit() const noexcept { return static_cast<Exit>(128 + last); }
 
 }  // namespace armjig::cli

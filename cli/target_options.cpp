@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "cli/outputs.hpp"
+
 namespace armjig::cli {
 
 void add_target_options(CLI::App& app, TargetOptions& options) {
@@ -32,17 +34,20 @@ Outcome<RigOptions> parse_target_options(const TargetOptions& options) {
                    "say where the device is; for a first try: --target emulated:");
   }
   RigOptions rig;
-  rig.wire_log = options.wire_log;
   auto target = parse_target(options.target);
   if (!target) return tl::unexpected{target.error()};
   rig.target = *std::move(target);
   const auto permissions = parse_permissions(options.allow);
   if (!permissions) return tl::unexpected{permissions.error()};
   rig.permissions = *permissions;
-  if (options.impair.empty()) return rig;
-  const auto impairment = parse_impairment(options.impair);
-  if (!impairment) return tl::unexpected{impairment.error()};
-  rig.impairment = *impairment;
+  if (!options.impair.empty()) {
+    const auto impairment = parse_impairment(options.impair);
+    if (!impairment) return tl::unexpected{impairment.error()};
+    rig.impairment = *impairment;
+  }
+  auto log = open_output("--wire-log", options.wire_log, OutputFile::Kind::kGrowing);
+  if (!log) return tl::unexpected{log.error()};
+  rig.wire_log = *std::move(log);
   return rig;
 }
 

@@ -25,7 +25,7 @@ void add_target_options(CLI::App& app, TargetOptions& options);
 /// Adds `--impair` and `--wire-log` alone.
 void add_link_options(CLI::App& app, TargetOptions& options);
 
-/// Reads the options.
+/// Reads the options, and opens the wire log.
 [[nodiscard]] Outcome<RigOptions> parse_target_options(const TargetOptions& options);
 
 /// What a command line needs besides the target to meet it in the same way again, for a report;

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "cli/device.hpp"
+#include "cli/outputs.hpp"
 #include "cli/pace.hpp"
 #include "cli/screen.hpp"
 #include "cli/signals.hpp"
@@ -86,7 +87,7 @@ class Viewer {
 
  private:
   [[nodiscard]] bool is_over() {
-    return signals_.must_end() || signals_.take_interrupt() ||
+    return is_standard_output_lost() || signals_.must_end() || signals_.take_interrupt() ||
            (screen_ && screen_->wants_to_quit()) || watch_.is_over();
   }
 
@@ -151,6 +152,8 @@ Exit watch(Devices devices, const Options& options) {
   const auto& device = **found;
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
+  const auto claimed = claim_standard_output(options.json ? "--json" : "");
+  if (!claimed) return report(claimed.error());
   if (options.reconnects) how->when_gone = WhenGone::kReopen;
   const bool is_watched_live = has_screen() && !options.has_end();
   if (how->target.is_emulated() && !options.has_end() && !is_watched_live) {

@@ -55,6 +55,7 @@ struct MutantFate {
   Mutant mutant;
   std::string killer{};  ///< the case that found it; empty: it survived
   std::string finding{};
+  bool was_tried = true;  ///< to the end; no: the run was stopped
 };
 
 /// Opens a target of a suite.
@@ -66,6 +67,9 @@ struct MutationOptions {
   unsigned threads = 1;
   /// Whether a mutant is sought for each must-requirement that none of the first killers proved.
   bool proves_requirements = true;
+  /// Asked before each case, from several threads: mutants from then on are not tried, and nothing
+  /// is said of requirements. Empty: the run goes to its end.
+  std::function<bool()> must_stop{};
 };
 
 /// A suite tried on its mutants.

@@ -32,6 +32,8 @@ std::string wording_of(const Judgement& judgement) {
   return fmt::format("expected {}, got {}", judgement.expected, judgement.actual);
 }
 
+constexpr std::string_view kStopped = "the run was interrupted";
+
 /// What one or several runs of a case came to.
 struct Finding {
   Judgement judgement;
@@ -52,13 +54,15 @@ class Run {
     if (is_alive_) bench_.measure_noise();
     add_facts(cases.size());
     for (const auto* one : cases) add(judge(*one));
-    if (is_alive_) (void)check_alive("after the last case");
+    if (is_alive_ && !is_stopped()) (void)check_alive("after the last case");
     for (const auto& waiver : options_.waivers) check_use(waiver);
     if (restarts_ > 0) add_missed();
     return std::move(report_);
   }
 
  private:
+  [[nodiscard]] bool is_stopped() const { return options_.must_stop && options_.must_stop(); }
+
   void add_facts(std::size_t selected) {
     report_.title = fmt::format("Conformance of {}", suite_.device);
     report_.facts = {
@@ -112,6 +116,9 @@ class Run {
     } else if (judgement.verdict == Verdict::kFail && deviates_as_known(one)) {
       judgement.verdict = Verdict::kDeviation;
     }
+    if (is_stopped()) {  // nobody knows what it would have come to
+      return row_of(one, {{Verdict::kSkipped, {}, std::string{kStopped}}});
+    }
     if (is_alive_) blame_start(one.start);
     excuse(one, judgement);
     if (judgement.verdict == Verdict::kFail || judgement.verdict == Verdict::kFlaky) {
@@ -126,6 +133,7 @@ class Run {
         return fmt::format("needs --allow {}", to_string(hazard));
       }
     }
+    if (is_stopped()) return std::string{kStopped};
     if (!is_alive_) return "the target does not answer";
     if (has_failed_ && options_.stops_at_first_failure) return "a case failed before";
     return std::nullopt;
@@ -134,7 +142,7 @@ class Run {
   Finding run_repeatedly(const Case& one) {
     auto finding = run_once(one, options_.profile);
     std::map<Verdict, int> verdicts{{finding.judgement.verdict, 1}};
-    for (int i = 1; i < options_.repeat && !bench_.error(); ++i) {
+    for (int i = 1; i < options_.repeat && !bench_.error() && !is_stopped(); ++i) {
       auto again = run_once(one, options_.profile);
       ++verdicts[again.judgement.verdict];
       again.duration += finding.duration;
@@ -262,7 +270,7 @@ class Run {
           return bench_.is_alive();
         },
         std::identity{});
-    if (is_alive) return true;
+    if (is_alive || is_stopped()) return true;
     auto row = row_of_device("alive", Verdict::kError);
     row.summary = fmt::format("no sign of life {}", when);
     row.expected = "an answer to a good message";

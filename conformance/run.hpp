@@ -11,6 +11,7 @@
 #include "conformance/waivers.hpp"
 #include "harness/report/report.hpp"
 #include "harness/rig/guard.hpp"
+#include "harness/rig/stoppable_ports.hpp"
 
 namespace armjig {
 
@@ -28,6 +29,9 @@ struct RunOptions {
   std::function<Duration()> missed{};
   std::string target{};   ///< as the user wrote it, for the report
   std::string command{};  ///< the command line, without filter, that does the same again
+  /// Asked before each case and after it: cases from then on are skipped, and so is one during
+  /// which it came. Empty: the run goes to its end.
+  MustStop must_stop{};
 };
 
 /// Runs the selected cases and calls `on_row` after each. The device is asked for a sign of life

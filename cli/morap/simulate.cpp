@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/morap/arguments.hpp"
+#include "cli/outputs.hpp"
 #include "emulators/morap/step_response.hpp"
 #include "harness/drive/morap/parameter_file.hpp"
 #include "harness/report/report.hpp"
@@ -94,13 +95,13 @@ Outcome<std::vector<PlotPoint>> read_recording(const std::string& path) {
   return problem(ErrorCode::kMalformed, path, "there is no line 'seconds,value' in it");
 }
 
-Outcome<void> write_csv(const StepResponse& response, const std::string& path) {
+std::string csv_of(const StepResponse& response) {
   std::string text = "seconds,value,volts,amperes\n";
   for (const auto& sample : response.samples) {
     text += fmt::format("{:.6f},{:.9g},{:.6f},{:.6f}\n", wording::seconds(sample.time),
                         sample.value, sample.volts, sample.amperes);
   }
-  return write_file(path, text);
+  return text;
 }
 
 Series series_of(const StepResponse& response, std::string name, double StepSample::* what) {
@@ -171,6 +172,9 @@ Exit simulate(const Options& options) {
     if (!read) return cli::report(read.error());
     recording = *std::move(read);
   }
+  const auto files =
+      open_outputs({{"--csv", options.csv}, {"--svg", options.svg}, {"--html", options.html}});
+  if (!files) return cli::report(files.error());
   const auto response = run(*test);
   if (!response.is_accepted) {
     fmt::print(stderr, "armjig: the node refuses the controller\n");
@@ -179,16 +183,10 @@ Exit simulate(const Options& options) {
   const auto made = report_of(response, options, std::move(recording));
   for (const auto& [name, value] : made.facts) fmt::print("{:<17} {}\n", name, value);
   fmt::print("{}", to_text(made.sections.front()));
-  if (!options.csv.empty()) {
-    if (const auto done = write_csv(response, options.csv); !done) return cli::report(done.error());
-  }
-  if (!options.svg.empty()) {
-    const auto done = write_file(options.svg, to_svg(made.sections.back().plots.front()));
-    if (!done) return cli::report(done.error());
-  }
-  if (const auto done = write_files(made, {{"html", options.html}}); !done) {
-    return cli::report(done.error());
-  }
+  const auto& [csv, svg, html] = *files;
+  if (csv) csv->write(csv_of(response));
+  if (svg) svg->write(to_svg(made.sections.back().plots.front()));
+  if (html) html->write(to_html(made));
   return Exit::kPassed;
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
+#include "cli/outputs.hpp"
 #include "cli/parol6/commands.hpp"
 #include "cli/parol6/script_file.hpp"
 #include "harness/report/report.hpp"
@@ -38,33 +40,14 @@ struct Options {
   std::string trace;
 };
 
-Outcome<void> put(const std::string& path, const std::string& content) {
-  if (path != "-") return write_file(path, content);
-  fmt::print("{}", content);
-  return {};
-}
-
-/// Every form that was asked for.
-Outcome<void> write_all(const Options& options, const script::Program& program,
-                        const script::Schedule& schedule) {
-  const auto& file = options.script.file;
-  Outcome<void> done;
-  if (!options.csv.empty()) done = put(options.csv, to_csv(program, schedule));
-  if (done && !options.json.empty()) done = put(options.json, to_json(program, schedule, file));
-  if (done && !options.html.empty()) {
-    done = put(options.html, to_html(to_report(program, schedule, file)));
-  }
-  if (done && !options.trace.empty()) done = put(options.trace, to_trace(schedule, file));
-  return done;
-}
-
-bool wants_stdout(const Options& options) {
-  return options.csv == "-" || options.json == "-" || options.html == "-" || options.trace == "-";
-}
-
 Exit plan(const Options& options) {
   const auto planning = parse_planning(options.planning);
   if (!planning) return report(planning.error());
+  const auto files = open_outputs({{"--csv", options.csv},
+                                   {"--json", options.json},
+                                   {"--html", options.html},
+                                   {"--trace", options.trace}});
+  if (!files) return report(files.error());
   const auto program = read_script(options.script);
   if (!program) return program.error();
   const auto [schedule, found] = script::inspect(*program, planning->settings, planning->start);
@@ -72,8 +55,15 @@ Exit plan(const Options& options) {
     print_diagnostics(found, options.script.file);
     return Exit::kUsage;
   }
-  if (const auto done = write_all(options, *program, *schedule); !done) return report(done.error());
-  if (!wants_stdout(options)) {
+  const auto& file = options.script.file;
+  const auto& [csv, json, html, trace] = *files;
+  if (csv) csv->write(to_csv(*program, *schedule));
+  if (json) json->write(to_json(*program, *schedule, file));
+  if (html) html->write(to_html(to_report(*program, *schedule, file)));
+  if (trace) trace->write(to_trace(*schedule, file));
+  const bool has_table = std::ranges::none_of(
+      *files, [](const Output& one) { return one && one->is_standard_output(); });
+  if (has_table) {
     fmt::print("{}", to_text(ReportSection{.title = options.script.file,
                                            .table = moves_table(*program, *schedule)}));
   }

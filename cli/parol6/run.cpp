@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <tl/expected.hpp>
 #include <utility>
 
+#include "cli/outputs.hpp"
 #include "cli/parol6/commands.hpp"
 #include "cli/parol6/script_file.hpp"
 #include "cli/signals.hpp"
@@ -83,9 +85,9 @@ class Session {
   /// Until it has ended, well or not.
   std::optional<Halt> go_through(Activity& activity, std::string_view name) {
     for (;;) {
-      if (signals_.take_interrupt() || signals_.must_end()) {
+      if (signals_.has_come()) {
         stop();
-        return Halt{Exit::kInterrupted, "interrupted, the arm stands"};
+        return Halt{signals_.exit(), "interrupted, the arm stands"};
       }
       if (auto halt = cycle()) return halt;
       const auto ending = activity.step(drive_, rig_.port().now(), drive_.take_events());
@@ -188,16 +190,16 @@ std::optional<Halt> prepare(Session& session, const script::Program& program, Pl
   return check_guarded(program, *checked->schedule, planning, session.telemetry().homed, file);
 }
 
-Outcome<void> write_plots(const script::ProgramRun& run, const std::string& folder) {
-  const auto plots = script::run_plots(run);
-  return write_file(folder + "/position.svg", to_svg(plots.position)).and_then([&] {
-    return write_file(folder + "/error.svg", to_svg(plots.error));
-  });
+using Plots = std::array<Output, 2>;  // position and error
+
+Outcome<Plots> open_plots(const std::string& folder) {
+  if (folder.empty()) return Plots{};
+  return open_outputs({{"--plots", folder + "/position.svg"}, {"--plots", folder + "/error.svg"}});
 }
 
 /// Prints what came of it.
 Exit run_on(Session& session, const script::Program& program, Planning planning,
-            const Options& options, const Target& target) {
+            const Options& options, const Target& target, const Plots& files) {
   const auto say = [&](const Halt& halt) {
     if (!halt.text.empty()) {
       fmt::print(stderr, "armjig: {}: {}\n", options.target.target, halt.text);
@@ -220,9 +222,9 @@ Exit run_on(Session& session, const script::Program& program, Planning planning,
                                            .table = script::results_table(program, run)}));
   }
   if (!options.plots.empty()) {
-    if (const auto written = write_plots(run, options.plots); !written) {
-      return report(written.error());
-    }
+    const auto plots = script::run_plots(run);
+    files.front()->write(to_svg(plots.position));
+    files.back()->write(to_svg(plots.error));
   }
   return halt ? say(*halt) : Exit::kPassed;
 }
@@ -249,10 +251,14 @@ Exit run(const Device& device, const Options& options) {
       return halt->exit;
     }
   }
+  const auto claimed = claim_standard_output(options.json ? "--json" : "");
+  if (!claimed) return report(claimed.error());
+  const auto plots = open_plots(options.plots);
+  if (!plots) return report(plots.error());
   auto rig = open_rig<OnStream>(device, *how);
   if (!rig) return report(rig.error());
   Session session{*std::move(rig)};
-  return run_on(session, *program, *planning, options, how->target);
+  return run_on(session, *program, *planning, options, how->target, *plots);
 }
 
 }  // namespace

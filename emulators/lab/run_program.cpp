@@ -46,6 +46,7 @@ class SignalsOfProgram {
     sigset_t signals;
     sigemptyset(&signals);
     for (const int signal : kSignals) sigaddset(&signals, signal);
+    sigaddset(&signals, SIGPIPE);
     return signals;
   }
 
@@ -76,15 +77,22 @@ std::vector<std::string> changed_environment(const std::vector<std::string>& cha
   return all;
 }
 
-int spawn(std::vector<std::string> arguments, std::vector<std::string> environment, pid_t& pid) {
+/// A signal that comes before it is known whom to hand it to waits for that.
+int spawn(std::vector<std::string> arguments, std::vector<std::string> environment) {
   const auto argv = pointers_to(arguments);
   const auto envp = pointers_to(environment);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   const auto signals = SignalsOfProgram::set();
   posix_spawnattr_setsigdefault(&attributes, &signals);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  sigset_t before;
+  ::pthread_sigmask(SIG_BLOCK, &signals, &before);
+  posix_spawnattr_setsigmask(&attributes, &before);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  pid_t pid = 0;
   const int error = ::posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), envp.data());
+  if (error == 0) child = pid;
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   posix_spawnattr_destroy(&attributes);
   return error;
 }
@@ -94,14 +102,12 @@ int spawn(std::vector<std::string> arguments, std::vector<std::string> environme
 Outcome<int> run_program(const std::vector<std::string>& arguments,
                          const std::vector<std::string>& environment) {
   const SignalsOfProgram signals;
-  pid_t pid = 0;
-  if (const int error = spawn(arguments, changed_environment(environment), pid); error != 0) {
+  if (const int error = spawn(arguments, changed_environment(environment)); error != 0) {
     return problem(error_from_errno(error).code, arguments.front(),
                    "is it the name of a program, or the path of one?");
   }
-  child = pid;
   int status = 0;
-  while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   child = 0;
   return WIFEXITED(status) ? WEXITSTATUS(status) : kKilledBySignal + WTERMSIG(status);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/report/report.hpp"
 
-#include <cerrno>
-#include <fstream>
+#include <memory>
+
+#include "harness/report/output_file.hpp"
 
 namespace armjig {
 namespace {
@@ -60,20 +61,15 @@ Outcome<void> write_files(const Report& report, const ReportFiles& files) {
   for (const auto& form : kForms) {
     const auto file = files.find(form.name);
     if (file == files.end() || file->second.empty()) continue;
-    if (auto written = write_file(file->second, form.write(report)); !written) return written;
+    auto written =
+        OutputFile::open(file->second).and_then([&](const std::shared_ptr<OutputFile>& opened) {
+          return opened->write(form.write(report));
+        });
+    if (!written) return written;
   }
   return {};
 }
 
 std::span<const ReportForm> report_forms() noexcept { return kForms; }
-
-Outcome<void> write_file(const std::string& path, std::string_view content) {
-  errno = 0;
-  std::ofstream out{path, std::ios::binary | std::ios::trunc};
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (out) return {};
-  return problem(ErrorCode::kCannotWrite, path, "check that the folder exists and is writable");
-}
 
 }  // namespace armjig

@@ -150,7 +150,4 @@ using ReportFiles = std::map<std::string, std::string, std::less<>>;
 /// Writes each form that has a path. Stops at the first problem.
 [[nodiscard]] Outcome<void> write_files(const Report& report, const ReportFiles& files);
 
-/// Writes a file as a whole. Problems name the path.
-[[nodiscard]] Outcome<void> write_file(const std::string& path, std::string_view content);
-
 }  // namespace armjig

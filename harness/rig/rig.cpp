@@ -58,15 +58,18 @@ template <>
 struct Layers<StreamPort> {
   using Logged = LoggedStream;
   using Guarded = GuardedStream;
+  using Stoppable = StoppableStream;
 };
 template <>
 struct Layers<SessionSource> {
   using Logged = LoggedSource;
+  using Stoppable = StoppableSource;
 };
 template <>
 struct Layers<BusPort> {
   using Logged = LoggedBus;
   using Guarded = GuardedBus;
+  using Stoppable = StoppableBus;
 };
 
 template <class Port>
@@ -124,7 +127,7 @@ Outcome<Rig<Port>> Rig<Port>::open(const Wiring<Port>& wiring, const RigOptions&
   auto port = open_port(wiring, options);
   if (!port) return tl::unexpected{port.error()};
   Rig rig{*std::move(port)};
-  if (!options.wire_log.empty()) {
+  if (options.wire_log != nullptr) {
     auto log = WireLog::create(options.wire_log, wiring.device, wiring.make_dissector);
     if (!log) return tl::unexpected{log.error()};
     using Logged = typename Layers<Port>::Logged;
@@ -140,6 +143,10 @@ Outcome<Rig<Port>> Rig<Port>::open(const Wiring<Port>& wiring, const RigOptions&
     auto impaired = impair_port(std::move(rig.port_), *options.impairment, rig.count_);
     if (!impaired) return tl::unexpected{impaired.error()};
     rig.port_ = *std::move(impaired);
+  }
+  if (options.must_stop && !options.target.is_emulated()) {
+    using Stoppable = typename Layers<Port>::Stoppable;
+    rig.port_ = std::make_unique<Stoppable>(std::move(rig.port_), options.must_stop);
   }
   return rig;
 }

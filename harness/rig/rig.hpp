@@ -14,7 +14,9 @@
 #include "harness/link/impairment.hpp"
 #include "harness/link/session_source.hpp"
 #include "harness/link/stream_port.hpp"
+#include "harness/report/output_file.hpp"
 #include "harness/rig/guarded_ports.hpp"
+#include "harness/rig/stoppable_ports.hpp"
 #include "harness/rig/target.hpp"
 #include "harness/rig/wiring.hpp"
 
@@ -31,15 +33,16 @@ struct RigOptions {
   Target target;
   Permissions permissions;               ///< what may be sent to it, if it is not emulated
   std::optional<Impairment> impairment;  ///< a bad link on purpose
-  std::string wire_log;                  ///< a file for every byte on the wire; empty: none
+  std::shared_ptr<OutputFile> wire_log;  ///< of the growing kind, for every byte; none: no log
   WhenGone when_gone{};
   WhenLeft when_left{};  ///< of a server
+  MustStop must_stop;    ///< ends waiting for a device that is not emulated; empty: nothing does
 };
 
 /// A device on the jig, for `Port` as in `Wiring`. From the device outwards: its port, the wire
-/// log, the guard unless it is emulated, the impairments. So the log has what the device really
-/// got, the guard's own stops among it, and a flipped bit does not slip past the guard. This is the
-/// one way by which programs get at a target.
+/// log, the guard unless it is emulated, the impairments, and what lets it be stopped. So the log
+/// has what the device really got, the guard's own stops among it, and a flipped bit does not slip
+/// past the guard. This is the one way by which programs get at a target.
 template <class Port>
 class Rig {
  public:

@@ -11,30 +11,29 @@
 
 namespace armjig {
 
-Outcome<std::shared_ptr<WireLog>> WireLog::create(const std::string& path, std::string_view device,
+Outcome<std::shared_ptr<WireLog>> WireLog::create(std::shared_ptr<OutputFile> file,
+                                                  std::string_view device,
                                                   MakeDissector make_dissector) {
-  std::ofstream file{path, std::ios::trunc};
-  file << fmt::format(R"({{"format":"golden-trace/1","device":"{}","title":"wire log"}})", device)
-       << '\n'
-       << std::flush;
-  if (!file) {
-    return problem(ErrorCode::kCannotWrite, path, "check that the folder exists and is writable");
-  }
+  const auto begun = file->write(fmt::format(
+      "{{\"format\":\"golden-trace/1\",\"device\":\"{}\",\"title\":\"wire log\"}}\n", device));
+  if (!begun) return tl::unexpected{begun.error()};
   return std::shared_ptr<WireLog>{new WireLog{std::move(file), make_dissector}};
 }
 
-WireLog::WireLog(std::ofstream file, MakeDissector make_dissector)
+WireLog::WireLog(std::shared_ptr<OutputFile> file, MakeDissector make_dissector)
     : file_{std::move(file)}, make_dissector_{make_dissector} {}
 
 void WireLog::add(Instant time, std::string_view keys, std::span<const Message> messages) {
   last_ = std::max(last_, time);
-  file_ << fmt::format(R"({{"t_us":{},{})", microseconds(last_), keys);
+  auto line = fmt::format(R"({{"t_us":{},{})", microseconds(last_), keys);
   const char* separator = ",\"messages\":[";
   for (const auto& message : messages) {
-    file_ << separator << to_json(message);
+    line += separator;
+    line += to_json(message);
     separator = ",";
   }
-  file_ << (messages.empty() ? "}" : "]}") << '\n' << std::flush;
+  line += messages.empty() ? "}\n" : "]}\n";
+  (void)file_->write(line);  // whoever opened it asks for its failure
 }
 
 void WireLog::add_input(Instant time, std::string_view kind, std::string_view name,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,14 +10,17 @@
 
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
+#include "harness/report/output_file.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
 /// A `golden-trace/1` file that grows line by line with what passes, and what it means: a key
-/// `messages` has those that ended in the line. `armjig decode` reads it back. Lines are flushed as
-/// they are made, so that nothing is missing after a crash. Not in it: what a write that failed may
-/// have sent in part, and the stops of the supervisor, which come when we are gone.
+/// `messages` has those that ended in the line. `armjig decode` reads it back. Lines are in the
+/// file as they are made, so that nothing is missing after a crash. A file that cannot be written
+/// any more ends with its last whole line, and tells why (`OutputFile::failure`). Not in it: what a
+/// write that failed may have sent in part, and the stops of the supervisor, which come when we are
+/// gone.
 class WireLog {
  public:
   using MakeDissector = std::unique_ptr<Dissector> (*)();
@@ -38,8 +40,8 @@ class WireLog {
     std::unique_ptr<Dissector> dissector_;
   };
 
-  /// Problems: the file cannot be written.
-  [[nodiscard]] static Outcome<std::shared_ptr<WireLog>> create(const std::string& path,
+  /// Begins `file`, of the growing kind. Problems: it cannot be written.
+  [[nodiscard]] static Outcome<std::shared_ptr<WireLog>> create(std::shared_ptr<OutputFile> file,
                                                                 std::string_view device,
                                                                 MakeDissector make_dissector);
 
@@ -54,9 +56,9 @@ class WireLog {
   [[nodiscard]] int next_connection() noexcept { return connections_++; }
 
  private:
-  WireLog(std::ofstream file, MakeDissector make_dissector);
+  WireLog(std::shared_ptr<OutputFile> file, MakeDissector make_dissector);
 
-  std::ofstream file_;
+  std::shared_ptr<OutputFile> file_;
   MakeDissector make_dissector_;
   Instant last_{};
   int connections_ = 0;

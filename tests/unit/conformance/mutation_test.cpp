@@ -70,6 +70,21 @@ TEST(Mutation, KillsEveryFaultyDemoDeviceAndProvesEveryMust) {
   EXPECT_THAT(findings(demo_suite(), {}), testing::IsEmpty());
 }
 
+TEST(Mutation, SaysWhatWasNotTriedWhenItIsStopped) {
+  const auto device = demo_suite();
+  int asked = 0;
+  MutationOptions options;
+  options.must_stop = [&asked] { return ++asked > 12; };
+  const auto result = run_mutants(device.suite, device.mutants, device.open, options);
+  const auto report = to_report(*result, device.suite, options);
+  EXPECT_GT(report.count(Verdict::kPass), 0U);
+  EXPECT_GT(report.count(Verdict::kSkipped), 0U);
+  EXPECT_EQ(report.count(Verdict::kFail), 0U) << "nobody knows whether they survive";
+  EXPECT_TRUE(result->unproven.empty());
+  EXPECT_EQ(report.rows.size(), mutants_of(device.mutants, Profile::kFirmware).size());
+  EXPECT_THAT(report.rows.back().actual, testing::HasSubstr("interrupted"));
+}
+
 TEST(Mutation, ListsWhatSurvivesAsAFinding) {
   auto device = demo_suite();
   device.mutants.faults = [] {

@@ -203,6 +203,18 @@ TEST(ConformanceRun, BlamesNobodyForAStartStateThatIsLeftOpen) {
   EXPECT_THAT(verdicts(report), ElementsAre("n.beyond.a inconclusive", "n.beyond.b inconclusive"));
 }
 
+TEST(ConformanceRun, SkipsWhatIsLeftWhenItIsStopped) {
+  NumberBench bench;
+  const auto report = run(bench, "", {.must_stop = [&bench] { return bench.ran.size() >= 2; }});
+  EXPECT_THAT(bench.ran, ElementsAre("passes", "fails"));
+  const auto rows = verdicts(report);
+  EXPECT_EQ(rows[0], "n.pass pass");
+  EXPECT_EQ(rows[1], "n.fail skipped") << "it was under way, so nobody knows what it shows";
+  EXPECT_EQ(report.count(Verdict::kSkipped), 11U) << "and each of the others is named";
+  EXPECT_EQ(report.rows.size(), 12U);
+  EXPECT_THAT(report.rows.back().actual, HasSubstr("interrupted"));
+}
+
 TEST(ConformanceRun, SkipsWhatIsNotAllowed) {
   NumberBench bench;
   const auto report =

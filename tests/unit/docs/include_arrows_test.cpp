@@ -39,7 +39,7 @@ constexpr Room kRooms[] = {
     {"harness/drive",
      "harness/core harness/wire harness/arm harness/config harness/link harness/timing "
      "harness/motion"},
-    {"harness/rig", "harness/core harness/wire harness/capture harness/link"},
+    {"harness/rig", "harness/core harness/wire harness/capture harness/link harness/report"},
     {"harness/script",
      "harness/core harness/wire harness/arm harness/motion harness/report harness/drive "
      "harness/rig"},

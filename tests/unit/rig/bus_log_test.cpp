@@ -42,7 +42,10 @@ class BusLog : public testing::Test {
 
   [[nodiscard]] std::unique_ptr<BusPort> logged(std::unique_ptr<BusPort> port) const {
     return std::make_unique<LoggedBus>(
-        std::move(port), WireLog::create(path_, "morap", morap::make_dissector).value());
+        std::move(port),
+        WireLog::create(OutputFile::open(path_, OutputFile::Kind::kGrowing).value(), "morap",
+                        morap::make_dissector)
+            .value());
   }
   [[nodiscard]] std::unique_ptr<BusPort> logged_node() const {
     const auto target = parse_target("emulated:").value();
@@ -147,21 +150,21 @@ TEST_F(BusLog, OfAnAdapterSaysWhatItKnows) {
 TEST_F(BusLog, IsPutIntoARig) {
   RigOptions options;
   options.target = parse_target("emulated:").value();
-  options.wire_log = path_;
+  options.wire_log = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
   const auto wiring = test::wiring<cli::OnBus>("morap");
   auto rig = Rig<BusPort>::open(wiring, options);
   ASSERT_TRUE(rig.has_value());
   const auto select = write_to(kNode, kSelectAngle);
   ASSERT_TRUE(rig->port().transfer({&select, 1}));
   EXPECT_EQ(events().size(), 1U);
-  options.wire_log = "/nonexistent/log";
+  options.wire_log = OutputFile::open("/dev/full", OutputFile::Kind::kGrowing).value();
   EXPECT_EQ(Rig<BusPort>::open(wiring, options).error().code, ErrorCode::kCannotWrite);
 }
 
 TEST_F(BusLog, HasWhatIsLeftOfAnImpairedTransaction) {
   RigOptions options;
   options.target = parse_target("emulated:").value();
-  options.wire_log = path_;
+  options.wire_log = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
   options.impairment = parse_impairment("out.disconnect-after=1").value();
   auto rig = cli::open_rig<cli::OnBus>(test::device("morap"), options);
   ASSERT_TRUE(rig.has_value());

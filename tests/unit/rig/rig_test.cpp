@@ -6,6 +6,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 
 #include "emulators/host/pseudo_terminal.hpp"
@@ -122,7 +123,7 @@ TEST(Rig, TheWireLogHasWhatTheDeviceGotAndNotWhatWasRefused) {
   const std::string path =
       fs::temp_directory_path() / ("armjig-rig-log-" + std::to_string(::getpid()));
   RigOptions options;
-  options.wire_log = path;
+  options.wire_log = OutputFile::open(path, OutputFile::Kind::kGrowing).value();
   {
     auto rig = open("pty:" + terminal.path(), options);
     ASSERT_TRUE(rig);
@@ -137,10 +138,25 @@ TEST(Rig, TheWireLogHasWhatTheDeviceGotAndNotWhatWasRefused) {
 
 TEST(Rig, AWireLogThatCannotBeWrittenIsAProblem) {
   RigOptions options;
-  options.wire_log = "/nonexistent/log";
+  options.wire_log = OutputFile::open("/dev/full", OutputFile::Kind::kGrowing).value();
   const auto rig = open("emulated:", options);
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, ErrorCode::kCannotWrite);
+}
+
+TEST(Rig, WaitingEndsWhenSomebodyWantsAnEnd) {
+  const auto terminal = PseudoTerminal::open().value();
+  RigOptions options;
+  int asked = 0;
+  bool is_running = true;
+  options.must_stop = [&] { return is_running && ++asked > 2; };
+  auto rig = open("pty:" + terminal.path(), options);
+  ASSERT_TRUE(rig);
+  std::array<std::byte, 8> buffer;
+  EXPECT_EQ(rig->port().read(buffer, rig->port().now() + 1h).error().code, ErrorCode::kForbidden);
+  EXPECT_EQ(rig->port().write(kIdle).error().code, ErrorCode::kForbidden);
+  is_running = false;
+  EXPECT_TRUE(rig->port().write(kIdle)) << "the link is still there for putting things in order";
 }
 
 TEST(Rig, ATargetThatIsNotThereIsAProblem) {

@@ -14,15 +14,21 @@
 #include "harness/link/memory_stream.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 #include "tests/unit/support/bytes.hpp"
+#include "tests/unit/support/limited_file_size.hpp"
 
 namespace armjig {
 namespace {
 
 using namespace std::chrono_literals;
+using test::LimitedFileSize;
 namespace fs = std::filesystem;
 
+Outcome<std::shared_ptr<WireLog>> parol6_log(const std::shared_ptr<OutputFile>& file) {
+  return WireLog::create(file, "parol6", parol6::make_dissector);
+}
 Outcome<std::shared_ptr<WireLog>> parol6_log(const std::string& path) {
-  return WireLog::create(path, "parol6", parol6::make_dissector);
+  const auto file = OutputFile::open(path, OutputFile::Kind::kGrowing);
+  return file ? parol6_log(*file) : tl::unexpected{file.error()};
 }
 
 class WireLog : public ::testing::Test {
@@ -120,10 +126,28 @@ TEST_F(WireLog, LeavesOutWhatWasNotWritten) {
 }
 
 TEST_F(WireLog, AFileThatCannotBeWrittenIsNamed) {
-  const auto log = parol6_log("/nonexistent/log");
+  const auto log = parol6_log(std::string{"/nonexistent/log"});
   ASSERT_FALSE(log);
   EXPECT_EQ(log.error().code, ErrorCode::kCannotWrite);
   EXPECT_EQ(log.error().where, "/nonexistent/log");
+}
+
+TEST_F(WireLog, IsNotBegunOnAFullDisk) {
+  EXPECT_EQ(parol6_log(std::string{"/dev/full"}).error().code, ErrorCode::kCannotWrite);
+}
+
+TEST_F(WireLog, EndsWithAWholeLineWhereTheDiskIsFull) {
+  const auto file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
+  {
+    auto arm = std::make_unique<MemoryStream<parol6::emulation::Arm>>(parol6::emulation::Arm{});
+    const LimitedFileSize limit{2'000};
+    LoggedStream port{std::move(arm), parol6_log(file).value()};
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(port.write(kIdle)) << "the device is not to blame";
+  }
+  ASSERT_TRUE(file->failure());
+  EXPECT_EQ(file->failure()->where, path_);
+  EXPECT_LT(trace().events.size(), 20U);
+  EXPECT_LT(fs::file_size(path_), 2'000U);
 }
 
 }  // namespace
