@@ -81,7 +81,7 @@ Problem problem_of_writing(std::string where, int error_number) {
 }
 
 Outcome<std::shared_ptr<OutputFile>> OutputFile::open(const std::string& path, Kind kind) {
-  const std::shared_ptr<OutputFile> file{new OutputFile{path, kind}};
+  std::shared_ptr<OutputFile> file{new OutputFile{path, kind}};
   int error = file->resolve();
   if (error == 0 && file->descriptor_ < 0) error = file->probe();
   if (error == 0) return file;
