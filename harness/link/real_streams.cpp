@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "harness/link/descriptor.hpp"
+#include "harness/link/port_around.hpp"
 #include "harness/link/tcp_connection.hpp"
+#include "harness/link/terminal_settings.hpp"
 
 namespace armjig {
 namespace {
@@ -82,6 +84,35 @@ bool set_raw(int fd, const SerialLine& line) noexcept {
   return set_mode(fd, mode) && ::tcflush(fd, TCIFLUSH) == 0;
 }
 
+/// When nothing else of the program is left, its terminal has its own settings again, which change
+/// bytes.
+void send_last_raw(int descriptor, Bytes message) noexcept {
+  termios mode{};
+  if (::tcgetattr(descriptor, &mode) == 0) {
+    ::cfmakeraw(&mode);
+    ::tcsetattr(descriptor, TCSANOW, &mode);
+  }
+  send_last(descriptor, message);
+}
+
+/// A terminal that has its settings back in the end.
+class TerminalStream final : public StreamAround {
+ public:
+  TerminalStream(std::unique_ptr<StreamPort> inner, TerminalSettings settings) noexcept
+      : StreamAround{std::move(inner)}, settings_{std::move(settings)} {}
+
+  Result<void> write(Bytes bytes) override { return inner().write(bytes); }
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
+    return inner().read(into, deadline);
+  }
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    return Lifeline{StreamAround::lifeline()->descriptor, send_last_raw};
+  }
+
+ private:
+  TerminalSettings settings_;  // goes before the file does
+};
+
 auto problem_of_connect(std::string_view address, const Error& error) {
   const auto hint = [&error]() -> std::string {
     switch (error.code) {
@@ -103,8 +134,16 @@ auto problem_of_connect(std::string_view address, const Error& error) {
 Outcome<std::unique_ptr<StreamPort>> open_pty(const std::string& path, SerialLine line) {
   auto terminal = open_terminal(path);
   if (!terminal) return problem_of_pty(path, terminal.error());
-  if (!set_raw(terminal->value(), line)) return problem_of_pty(path, error_from_errno(errno));
-  return std::make_unique<DescriptorStream>(*std::move(terminal), &write_all);
+  const int file = terminal->value();
+  if (const auto session = session_on(file); session != 0) {
+    return problem(ErrorCode::kBusy, path,
+                   describe_session(session) + "; give the path that 'armjig emulate' prints");
+  }
+  auto settings = TerminalSettings::keep(file);
+  if (!settings) return problem_of_pty(path, settings.error());
+  if (!set_raw(file, line)) return problem_of_pty(path, error_from_errno(errno));
+  return std::make_unique<TerminalStream>(
+      std::make_unique<DescriptorStream>(*std::move(terminal), &write_all), *std::move(settings));
 }
 
 Outcome<std::unique_ptr<StreamPort>> open_tcp_stream(std::string_view address) {

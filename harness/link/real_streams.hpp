@@ -18,6 +18,8 @@ namespace armjig {
 /// pseudo-terminal knows neither parity nor speeds that have no name. What came before it was
 /// opened is thrown away. The port is locked with flock(2), as other serial programs do, so that
 /// only one of them has it; not with TIOCEXCL, which would outlive us on a pseudo-terminal.
+/// Its settings are put back in the end, as `TerminalSettings` says. A terminal on which somebody
+/// works is refused: it is `kBusy`.
 /// Problems: `kNotFound`, `kNoPermission`, `kBusy`, `kBadTarget` (not a terminal), `kDisconnected`,
 /// `kSystem`.
 [[nodiscard]] Outcome<std::unique_ptr<StreamPort>> open_pty(const std::string& path,

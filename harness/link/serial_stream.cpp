@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "harness/link/descriptor.hpp"
+#include "harness/link/terminal_settings.hpp"
 
 namespace armjig {
 namespace {
@@ -204,6 +205,9 @@ Outcome<std::unique_ptr<StreamPort>> open_serial(const SerialAddress& address) {
   // has to be locked before anything about the port is changed.
   auto port = open_terminal(path);
   if (!port) return problem_of_port(path, port.error());
+  if (const auto session = session_on(port->value()); session != 0) {
+    return problem(ErrorCode::kBusy, path, describe_session(session) + "; end the login on it");
+  }
   sp_port* named = nullptr;
   if (::sp_get_port_by_name(kernel_name(path).c_str(), &named) != SP_OK) {
     return problem_of_port(path, {ErrorCode::kBadTarget});

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/link/real_streams.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "emulators/host/pseudo_terminal.hpp"
+#include "harness/link/descriptor.hpp"
 #include "harness/link/tcp_connection.hpp"
 #include "tests/integration/support/program.hpp"
 #include "tests/integration/support/sockets.hpp"
@@ -60,6 +66,98 @@ class PtyStream : public ::testing::Test {
  private:
   std::filesystem::path folder_;
 };
+
+/// A terminal as a shell leaves it, its other end, and the settings that it has.
+struct Cooked {
+  Cooked() {
+    ::grantpt(master.value());
+    ::unlockpt(master.value());
+    path = ::ptsname(master.value());
+    slave = Descriptor{::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
+    before = settings();
+  }
+  [[nodiscard]] termios settings() const {
+    termios now{};
+    ::tcgetattr(slave.value(), &now);
+    return now;
+  }
+  [[nodiscard]] bool is_as_before() const {
+    const auto now = settings();
+    return now.c_iflag == before.c_iflag && now.c_oflag == before.c_oflag &&
+           now.c_cflag == before.c_cflag && now.c_lflag == before.c_lflag;
+  }
+
+  Descriptor master{::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)};
+  Descriptor slave;
+  std::string path;
+  termios before{};
+};
+
+TEST_F(PtyStream, GivesTheTerminalItsSettingsBack) {
+  const Cooked terminal;
+  auto port = open_pty(terminal.path);
+  ASSERT_TRUE(port) << describe(port.error());
+  EXPECT_FALSE(terminal.is_as_before());
+  port->reset();
+  EXPECT_TRUE(terminal.is_as_before());
+}
+
+TEST_F(PtyStream, GivesThemBackWhenASignalEndsTheProgram) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const Cooked terminal;
+    const auto child = ::fork();
+    if (child == 0) {
+      ::signal(signal, SIG_DFL);
+      const auto port = open_pty(terminal.path);
+      if (!port || terminal.is_as_before()) ::_exit(1);
+      ::raise(signal);
+      ::_exit(2);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+    EXPECT_TRUE(terminal.is_as_before()) << signal;
+  }
+}
+
+TEST_F(PtyStream, StopsADeviceWithoutTheTerminalsOwnSettings) {
+  const Cooked terminal;
+  auto port = open_pty(terminal.path);
+  ASSERT_TRUE(port);
+  const auto line = (*port)->lifeline();
+  ASSERT_TRUE(line);
+  ::tcsetattr(terminal.slave.value(), TCSANOW, &terminal.before);
+  line->send(line->descriptor, bytes_of("a\nb"));
+  std::array<char, 16> got{};
+  const auto size = ::read(terminal.master.value(), got.data(), got.size());
+  EXPECT_EQ(std::string(got.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))), "a\nb");
+}
+
+TEST_F(PtyStream, IsNotATerminalOnWhichSomebodyWorks) {
+  const Cooked terminal;
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const auto child = ::fork();
+  if (child == 0) {
+    ::setsid();
+    ::ioctl(terminal.slave.value(), TIOCSCTTY, 0);
+    const auto own = open_pty(terminal.path);
+    const char answer = !own && own.error().code == ErrorCode::kBusy ? 'y' : 'n';
+    (void)!::write(pipe[1], &answer, 1);
+    ::pause();
+    ::_exit(0);
+  }
+  char answer{};
+  ASSERT_EQ(::read(pipe[0], &answer, 1), 1);
+  EXPECT_EQ(answer, 'y') << "its own";
+  expect_problem(open_pty(terminal.path), ErrorCode::kBusy,
+                 "it is the terminal of process " + std::to_string(child));
+  EXPECT_TRUE(terminal.is_as_before());
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
 
 TEST_F(PtyStream, CarriesEveryByteValueBothWaysUnchanged) {
   const auto terminal = PseudoTerminal::open();

@@ -90,7 +90,8 @@ TEST(Rig, SetsATerminalToTheLineOfTheDevice) {
        {std::pair{1'200U, B1200}, {9'600U, B9600}, {3'000'000U, B3000000}}) {
     RigOptions options;
     options.target = parse_target("pty:" + terminal.path()).value();
-    ASSERT_TRUE(Rig<StreamPort>::open(wiring({.baud = baud, .stop_bits = 2}), options));
+    const auto rig = Rig<StreamPort>::open(wiring({.baud = baud, .stop_bits = 2}), options);
+    ASSERT_TRUE(rig);
     termios mode{};
     ASSERT_EQ(::tcgetattr(terminal.master().value(), &mode), 0);
     EXPECT_EQ(::cfgetospeed(&mode), name);
