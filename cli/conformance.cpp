@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "cli/conformance_mutants.hpp"
 #include "cli/device.hpp"
@@ -23,6 +23,7 @@
 #include "conformance/run.hpp"
 #include "conformance/suite.hpp"
 #include "harness/core/nearest.hpp"
+#include "harness/files/user_file.hpp"
 #include "harness/report/diff.hpp"
 #include "harness/report/failures.hpp"
 
@@ -234,17 +235,10 @@ Exit conformance(Devices devices, Options options) {
   return run(**device, suite, std::move(options));
 }
 
-Outcome<std::string> read_file(const std::string& path) {
-  std::ifstream in{path, std::ios::binary};
-  std::string text{std::istreambuf_iterator<char>{in}, {}};
-  if (!in) return problem(ErrorCode::kCannotRead, path, "check that the file is there");
-  return text;
-}
-
 Exit compare(const std::string& before, const std::string& after) {
-  const auto old_text = read_file(before);
+  const auto old_text = read_user_file(before);
   if (!old_text) return report(old_text.error());
-  const auto new_text = read_file(after);
+  const auto new_text = read_user_file(after);
   if (!new_text) return report(new_text.error());
   const auto diff = compare_reports(*old_text, before, *new_text, after);
   if (!diff) return report(diff.error());
@@ -280,9 +274,10 @@ void add_conformance(CLI::App& app, Devices devices, Action& action) {
   command->add_option("--filter", options->run.selection.filter, "only what has this in its name");
   command->add_option("--tier", options->tier, "quick leaves out what takes long")
       ->check(one_of({"quick", "full"}));
-  command->add_option("--seed", options->run.seed, "for bytes that may be any");
+  command->add_option("--seed", options->run.seed, "for bytes that may be any")
+      ->transform(whole(0, std::numeric_limits<std::uint64_t>::max()));
   command->add_option("--repeat", options->run.repeat, "run each case so often")
-      ->check(CLI::Range(1, 1'000'000));
+      ->transform(whole(1, 1'000'000));
   command->add_option("--shard", options->shard, "only one part of several, as in 2/4");
   command->add_flag("--fail-fast", options->run.stops_at_first_failure,
                     "run nothing more once a case has failed");

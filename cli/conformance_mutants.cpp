@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "cli/device.hpp"
 #include "cli/report_files.hpp"
@@ -102,7 +103,7 @@ void add_conformance_mutants(CLI::App& conformance, Devices devices, Action& act
       ->check(one_of({"firmware", "documented"}));
   command->add_option("--filter", options->run.filter, "only mutants with this in their name");
   command->add_option("--threads", options->run.threads, "at most so many at once")
-      ->check(CLI::Range(1, 256));
+      ->transform(whole(1, 256));
   command->add_flag("--list", options->list, "name the mutants and stop");
   add_report_files(*command, options->files);
   add_colour_option(*command, options->colour);

@@ -49,6 +49,7 @@ struct Options {
 };
 
 constexpr Duration kPeriod = 10ms;
+constexpr std::size_t kLongestLine = 4096;
 
 Problem silence(const Options& options, const DeviceConsole& console) {
   return {ErrorCode::kTimedOut, options.target.target, std::string{console.silence()}};
@@ -61,7 +62,7 @@ class InputLines {
 
   /// The next line without its end; none: it is not there yet, or input has ended.
   std::optional<std::string> next(Patience patience) {
-    while (!has_ended_ && text_.find('\n') == std::string::npos) {
+    while (!has_ended_ && !is_endless() && text_.find('\n') == std::string::npos) {
       pollfd ready{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
       if (::poll(&ready, 1, patience == Patience::kWait ? -1 : 0) != 1) return std::nullopt;
       std::array<char, 4096> buffer;
@@ -69,13 +70,17 @@ class InputLines {
       has_ended_ = size <= 0;
       if (size > 0) text_.append(buffer.data(), static_cast<std::size_t>(size));
     }
-    if (text_.empty()) return std::nullopt;
+    if (text_.empty() || is_endless()) return std::nullopt;
     const auto end = std::min(text_.find('\n'), text_.size());
     auto line = text_.substr(0, end);
     text_.erase(0, end + 1);
     return line;
   }
   [[nodiscard]] bool has_ended() const { return has_ended_ && text_.empty(); }
+  /// Whether what comes has no lines. Nothing is read any more then.
+  [[nodiscard]] bool is_endless() const {
+    return std::min(text_.find('\n'), text_.size()) > kLongestLine;
+  }
 
  private:
   std::string text_;
@@ -132,6 +137,9 @@ class PipeSession {
         if (auto done = finish(); !done) return done;
       } else if (input_.has_ended()) {
         return {};
+      } else if (input_.is_endless()) {
+        return problem(ErrorCode::kCannotRead, fmt::format("standard input:{}", line_ + 1),
+                       fmt::format("the line has more than {} bytes", kLongestLine));
       } else if (auto cycled = console_->cycle(); !cycled) {
         return cycled;
       }

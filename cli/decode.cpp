@@ -2,9 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +16,7 @@
 #include "harness/capture/message_json.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
+#include "harness/files/user_file.hpp"
 #include "harness/wire/brief.hpp"
 #include "harness/wire/dissector.hpp"
 
@@ -59,15 +57,8 @@ struct Chunk {
   std::uint32_t stream{};  ///< the connection; pieces of several do not belong together
 };
 
-Outcome<std::string> read_all(const std::string& path) {
-  if (path == "-") return std::string{std::istreambuf_iterator<char>{std::cin}, {}};
-  errno = 0;
-  std::ifstream in{path, std::ios::binary};
-  if (!in) return problem(ErrorCode::kCannotRead, path, "check the path and its permissions");
-  std::string text{std::istreambuf_iterator<char>{in}, {}};
-  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "it is a folder or cannot be read");
-  return text;
-}
+/// Of raw bytes and digits; a recording is read by lines and may be larger.
+constexpr std::size_t kMostBytes = std::size_t{64} << 20U;
 
 Outcome<std::vector<std::byte>> parse_hex(const std::string& where, const std::string& text) {
   auto bytes = from_hex(text);
@@ -77,8 +68,8 @@ Outcome<std::vector<std::byte>> parse_hex(const std::string& where, const std::s
                  "write two digits for each byte");
 }
 
-Outcome<std::vector<Chunk>> chunks_of_trace(const std::string& path, const std::string& text) {
-  const auto trace = parse_trace(path, text);
+Outcome<std::vector<Chunk>> chunks_of_trace(UserFile& file, const std::string& path) {
+  const auto trace = read_trace(file, path);
   if (!trace) return tl::unexpected{trace.error()};
   std::vector<Chunk> chunks;
   int unanswered = 0;
@@ -101,10 +92,7 @@ Outcome<std::vector<Chunk>> chunks_of_trace(const std::string& path, const std::
   return chunks;
 }
 
-std::string guess_format(const std::string& content) {
-  if (content.starts_with('{')) return "trace";
-  return from_hex(content) ? "hex" : "raw";
-}
+std::string guess_format(const std::string& content) { return from_hex(content) ? "hex" : "raw"; }
 
 /// Without a direction the bytes go through both dissectors, and the one that finds more messages
 /// in them wins.
@@ -135,10 +123,13 @@ Outcome<std::vector<Chunk>> read_chunks(const Options& options, MakeDissector ma
     for (const auto& word : options.hex) text += word + ' ';
     return parse_hex("argument", text).map(one_chunk);
   }
-  const auto content = read_all(options.file);
+  auto file = options.file == "-" ? UserFile::standard_input() : UserFile::open(options.file);
+  if (!file) return tl::unexpected{file.error()};
+  const bool is_trace = options.format == "auto" && file->peek() == '{';
+  if (is_trace || options.format == "trace") return chunks_of_trace(*file, options.file);
+  const auto content = file->rest(kMostBytes);
   if (!content) return tl::unexpected{content.error()};
   const auto format = options.format == "auto" ? guess_format(*content) : options.format;
-  if (format == "trace") return chunks_of_trace(options.file, *content);
   if (format == "hex") return parse_hex(options.file, *content).map(one_chunk);
   const auto raw = std::as_bytes(std::span{*content});
   return one_chunk({raw.begin(), raw.end()});

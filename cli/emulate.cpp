@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/checks.hpp"
 #include "cli/device.hpp"
 #include "cli/device_inputs.hpp"
 #include "cli/program_judge.hpp"
@@ -108,7 +109,11 @@ Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) 
     if (equals == 0 || equals == std::string::npos) {
       return problem(ErrorCode::kBadValue, "--set " + setting, "write NAME=VALUE");
     }
-    options[setting.substr(0, equals)] = setting.substr(equals + 1);
+    auto name = setting.substr(0, equals);
+    if (options.contains(name)) {
+      return problem(ErrorCode::kBadValue, "--set " + setting, "it is said twice");
+    }
+    options[std::move(name)] = setting.substr(equals + 1);
   }
   return options;
 }
@@ -153,7 +158,7 @@ Outcome<void> serve(std::unique_ptr<HostedStream> hosted, const OnStream& /*kind
 Outcome<void> serve(std::unique_ptr<HostedServer> hosted, const OnServer& kind,
                     const Options& options, ProgramCheck* check) {
   if (options.wants_pty || !options.pty.link.empty()) {
-    return problem(ErrorCode::kBadValue, options.device,
+    return problem(ErrorCode::kUnsupported, options.device,
                    "it is a TCP server and has no pseudo-terminal; leave out --pty, --link");
   }
   auto how = host_options(options);
@@ -176,7 +181,7 @@ sigset_t block_signals() {
 Outcome<void> serve(std::unique_ptr<HostedBus> hosted, const OnBus& /*kind*/,
                     const Options& options, ProgramCheck* check) {
   if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1) {
-    return problem(ErrorCode::kBadValue, options.device,
+    return problem(ErrorCode::kUnsupported, options.device,
                    "a bus takes --set, --bus, --json and --check, and no other option");
   }
   const auto signals = block_signals();
@@ -241,21 +246,22 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
       ->type_name("PATH");
   auto* tcp = command->add_option("--tcp", options->tcp.port, "on this TCP port; 0: any free one")
                   ->type_name("PORT")
-                  ->check(CLI::Range(0, 65535));
+                  ->transform(whole(0, 65535));
   command->add_option("--bind", options->tcp.address, "address for --tcp (default: 127.0.0.1)")
       ->type_name("ADDRESS")
       ->needs(tcp);
   command
       ->add_option("--speed", options->speed,
                    "device time over wall time, 0.001 to 10000 (default: 1)")
-      ->type_name("FACTOR");
+      ->type_name("FACTOR")
+      ->check(number(0.001, 10'000));
   command
       ->add_option("--set", options->settings,
                    "an option of the device, as in emulated: targets; may be repeated")
       ->type_name("NAME=VALUE");
   command->add_option("--bus", options->bus, "the N of /dev/i2c-N, 0 to 255 (default: 1)")
       ->type_name("N")
-      ->check(CLI::Range(0, 255));
+      ->transform(whole(0, 255));
   command->add_flag("--json", options->wants_json,
                     "say where it listens as one line of JSON; the report of --check too");
   add_check(*command, *options);

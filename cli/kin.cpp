@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "cli/command.hpp"
 #include "harness/arm/jacobian.hpp"
@@ -121,17 +122,6 @@ Outcome<arm::JointVector> joints_of(const arm::Arm& arm, const std::vector<doubl
   arm::JointVector joints(numbers.size());
   for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = taken(arm.joints[j], numbers[j]);
   return joints;
-}
-
-Outcome<void> check_finite(const Options& options) {
-  for (const auto* numbers : {&options.numbers, &options.seed, &options.tool}) {
-    for (const double number : *numbers) {
-      if (!std::isfinite(number) || std::abs(number) > 1e9) {
-        return problem(ErrorCode::kBadValue, fmt::format("{}", number), "write plain numbers");
-      }
-    }
-  }
-  return {};
 }
 
 /// Without the sign of a zero.
@@ -347,6 +337,8 @@ std::vector<std::string> convention_names() {
   return names;
 }
 
+CLI::Validator plain_number() { return number(-1e9, 1e9); }
+
 using Compute = Exit (*)(const Options&);
 
 CLI::App* add_computation(CLI::App& kin, const std::string& name, const std::string& what,
@@ -358,16 +350,13 @@ CLI::App* add_computation(CLI::App& kin, const std::string& name, const std::str
   command->add_option("--tip", options->tip, "the link of the URDF that the arm ends in");
   command->add_option("--tool", options->tool, "a tool on the flange: x,y,z,rx,ry,rz in mm and deg")
       ->delimiter(',')
+      ->check(plain_number())
       ->expected(6);
   command->add_option("--convention", options->convention, "what three angles mean")
       ->check(one_of(convention_names()));
   command->add_flag("--json", options->json, "one JSON object (docs/schemas)");
-  command->callback([options, compute, &action] {
-    action = [options, compute] {
-      const auto finite = check_finite(*options);
-      return finite ? compute(*options) : report(finite.error());
-    };
-  });
+  command->callback(
+      [options, compute, &action] { action = [options, compute] { return compute(*options); }; });
   return command;
 }
 
@@ -385,15 +374,18 @@ void add_kin(CLI::App& app, Devices /*devices*/, Action& action) {
   auto* fk = add_computation(*kin, "fk", "where the tool is", options, forward_kinematics, action);
   fk->add_option("JOINTS", options->numbers, "degrees (mm where a joint slides)")
       ->delimiter(',')
+      ->check(plain_number())
       ->required();
   auto* ik =
       add_computation(*kin, "ik", "how to get the tool there", options, inverse_kinematics, action);
   ik->add_option("POSE", options->numbers, "x y z in mm, rx ry rz in degrees")
       ->delimiter(',')
+      ->check(plain_number())
       ->expected(6)
       ->required();
   ik->add_option("--seed", options->seed, "joints to be near to; the middle if not given")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->check(plain_number());
   ik->add_flag("--all", options->all, "every branch within the limits, the nearest first");
   add_computation(*kin, "limits", "what the joints may do", options, limits, action);
 }

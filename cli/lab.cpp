@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/checks.hpp"
 #include "cli/device.hpp"
 #include "cli/program_judge.hpp"
 #include "cli/report_files.hpp"
@@ -76,7 +77,7 @@ Exit exec(Devices devices, const Options& options) {
     return report({ErrorCode::kBadValue, "--i2c is missing", "name a TOML file with the devices"});
   }
   if (options.program.empty()) {
-    return report({ErrorCode::kBadValue, "no program", "write it behind --"});
+    return report({ErrorCode::kBadValue, "PROGRAM is missing", "write it behind --"});
   }
   const auto device = bus_device(devices);
   if (!device) return report(device.error());
@@ -115,7 +116,7 @@ void add_lab(CLI::App& app, Devices devices, Action& action) {
       ->type_name("NODES.toml");
   command->add_option("--bus", options->number, "its number, 0 to 255 (default: 1)")
       ->type_name("N")
-      ->check(CLI::Range(0, 255));
+      ->transform(whole(0, 255));
   auto* check = command->add_flag("--check", options->wants_check, "judge the program");
   for (auto* file : add_report_files(*command, options->files)) file->needs(check);
   add_colour_option(*command, options->colour);

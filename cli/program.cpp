@@ -18,11 +18,13 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/candidates.hpp"
+#include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "cli/device.hpp"
 #include "cli/outputs.hpp"
 #include "cli/terminal.hpp"
 #include "harness/core/version.hpp"
+#include "harness/report/wording.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -82,7 +84,7 @@ std::string complaint_of(const CLI::App& command, const CLI::ParseError& error) 
   const bool may_be_of_rest =
       code == CLI::ExitCodes::ExtrasError || code == CLI::ExitCodes::RequiredError;
   const auto rest = may_be_of_rest ? complaint_of_rest(command) : "";
-  return rest.empty() ? fmt::format("{}; ", error.what()) : rest;
+  return wording::line(rest.empty() ? fmt::format("{}; ", error.what()) : rest);
 }
 
 /// CLI11's own codes start at 100; ours are fixed.
@@ -142,6 +144,7 @@ Exit run(int argc, char** argv, Devices devices) {
   for (const auto& device : devices) {
     for (const auto add : device.commands) add(app, device, action);
   }
+  refuse_empty_texts(app);
   const std::vector<std::string> words{argv + std::min(argc, 1), argv + argc};
   if (!words.empty() && words.front() == kAskedToComplete) {
     for (const auto& word : candidates(app, devices, std::span{words}.subspan(1))) {
@@ -164,7 +167,7 @@ Exit run(int argc, char** argv, Devices devices) {
 }  // namespace
 
 Exit report(const Problem& problem) {
-  fmt::print(stderr, "armjig: {}\n", describe(problem));
+  fmt::print(stderr, "armjig: {}\n", wording::line(describe(problem)));
   switch (problem.code) {
     case ErrorCode::kBadHex:
     case ErrorCode::kOddHex:

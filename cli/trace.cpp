@@ -2,8 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +12,9 @@
 #include "cli/device.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
+#include "harness/core/nesting.hpp"
+#include "harness/files/user_file.hpp"
+#include "harness/report/wording.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -55,14 +56,18 @@ const Device* device_of_table(const std::string& text, Devices devices) {
   return nullptr;
 }
 
+Outcome<TableVerdict> verdict_of_table(const std::string& path, Devices devices) {
+  const auto text = read_user_file(path);
+  if (!text) return tl::unexpected{text.error()};
+  if (is_too_deep(*text)) return problem(ErrorCode::kMalformed, path, std::string{kTooDeep});
+  const auto* const device = device_of_table(*text, devices);
+  if (device != nullptr) return device->replay.verify_table(*text, path);
+  return problem(ErrorCode::kUnknownDevice, path,
+                 "no emulator here is verified by tables of that device");
+}
+
 void verify_table(const std::string& path, Devices devices, Tally& tally) {
-  std::ifstream file{path, std::ios::binary};
-  const std::string text{std::istreambuf_iterator<char>{file}, {}};
-  const auto* const device = device_of_table(text, devices);
-  const auto verdict = device == nullptr
-                           ? problem(ErrorCode::kUnknownDevice, path,
-                                     "no emulator here is verified by tables of that device")
-                           : device->replay.verify_table(text, path);
+  const auto verdict = verdict_of_table(path, devices);
   if (!verdict) {
     (void)report(verdict.error());
     ++tally.unreadable;
@@ -80,18 +85,19 @@ void verify_file(const std::string& path, Devices devices, Tally& tally) {
   if (path.ends_with(".json")) return verify_table(path, devices, tally);
   const auto trace = read_trace(path);
   if (!trace) {
-    fmt::print(stderr, "armjig: {}\n", describe(trace.error()));
+    (void)report(trace.error());
     ++tally.unreadable;
     return;
   }
   const auto device = device_recorded(trace->device, devices);
   if (device == devices.end()) {
-    fmt::print(stderr, "armjig: {}: no emulator replays '{}' here\n", path, trace->device);
+    fmt::print(stderr, "armjig: {}: no emulator replays '{}' here\n", wording::line(path),
+               wording::line(trace->device));
     return;
   }
   const auto difference = verify(*trace, device->replay);
   if (!difference) {
-    fmt::print(stderr, "armjig: {}\n", describe(difference.error()));
+    (void)report(difference.error());
     ++tally.unreadable;
   } else if (!*difference) {
     ++tally.identical;

@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "cli/checks.hpp"
 #include "cli/device.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pace.hpp"
@@ -157,8 +158,8 @@ Exit watch(Devices devices, const Options& options) {
   if (options.reconnects) how->when_gone = WhenGone::kReopen;
   const bool is_watched_live = has_screen() && !options.has_end();
   if (how->target.is_emulated() && !options.has_end() && !is_watched_live) {
-    return report({ErrorCode::kBadValue, options.target.target + " in virtual time never ends",
-                   "say --seconds or --count"});
+    return report({ErrorCode::kBadValue, options.target.target,
+                   "virtual time never ends by itself: say --seconds or --count"});
   }
   const auto rate = options.rate.value_or(device.watch_rate);
   const auto period = duration_of(1 / rate);
@@ -193,13 +194,13 @@ void add_watch(CLI::App& app, Devices devices, Action& action) {
   add_target_options(*command, options->target);
   command->add_option("--rate", options->rate, "questions a second, 1 to 1000 (default: as usual)")
       ->type_name("HZ")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(number(1, 1000));
   auto* count = command->add_option("--count", options->count, "end after that many questions")
                     ->type_name("N")
-                    ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));
+                    ->transform(whole(1, std::uint64_t{1} << 62U));
   command->add_option("--seconds", options->seconds, "end after that time")
       ->type_name("S")
-      ->check(CLI::Range(0.001, 1e9))
+      ->check(number(0.001, 1e9))
       ->excludes(count);
   command->add_flag("--reconnect", options->reconnects, "wait for a device that has gone");
   command->add_flag("--json", options->json, "a JSON object for each message (armjig.telemetry/1)");

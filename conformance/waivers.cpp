@@ -4,11 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+
+#include "harness/core/nesting.hpp"
+#include "harness/files/user_file.hpp"
 
 namespace armjig {
 namespace {
@@ -43,6 +45,7 @@ class Reader {
       : suite_{suite}, today_{today}, where_{where} {}
 
   Outcome<std::vector<Waiver>> read(std::string_view text) {
+    if (is_too_deep(text)) return bad("", std::string{kTooDeep});
     const auto json = Json::parse(text, nullptr, false);
     if (!json.is_object() || text_at(json, "schema") != kSchema) {
       return bad("", fmt::format("write {{\"schema\": \"{}\", \"waivers\": [...]}}", kSchema));
@@ -99,10 +102,8 @@ Outcome<std::vector<Waiver>> parse_waivers(std::string_view text, const Suite& s
 }
 
 Outcome<std::vector<Waiver>> read_waivers(const std::string& path, const Suite& suite, Date today) {
-  std::ifstream in{path, std::ios::binary};
-  const std::string text{std::istreambuf_iterator<char>{in}, {}};
-  if (!in) return problem(ErrorCode::kCannotRead, path, "check that the file is there");
-  return parse_waivers(text, suite, today, path);
+  return read_user_file(path).and_then(
+      [&](const std::string& text) { return parse_waivers(text, suite, today, path); });
 }
 
 std::string to_string(Date day) {

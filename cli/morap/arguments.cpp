@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/morap/arguments.hpp"
 
+#include "cli/checks.hpp"
 #include "cli/choice.hpp"
 
 namespace armjig::cli {
@@ -21,10 +22,12 @@ TuneOptions add_tune_options(CLI::App& app, TuneArguments& arguments) {
           ->check(one_of({"pd", "pid", "pi"}));
   auto* inertia = app.add_option("--inertia", arguments.inertia,
                                  "of what hangs on the output shaft, kg m^2, up to 10")
-                      ->type_name("J");
+                      ->type_name("J")
+                      ->check(number(1e-5, 10));
   auto* pole =
       app.add_option("--pole", arguments.pole, "of the closed loop, 1/s, -200 to 0: as in -9")
-          ->type_name("W");
+          ->type_name("W")
+          ->check(number(-1e3, 1e3));
   return {type, inertia, pole};
 }
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/checks.hpp"
 #include "harness/wire/morap/message.hpp"
 
 namespace armjig::cli {
@@ -17,7 +18,7 @@ Outcome<Rig<BusPort>> open_bus_rig(const Device& device, const TargetOptions& op
 void add_node_option(CLI::App& app, std::uint8_t& node) {
   app.add_option("--node", node, "identifier of the node, 0 to 16 (default: 2)")
       ->type_name("ID")
-      ->check(CLI::Range(0, int{morap::kLastNode}));
+      ->transform(whole(0, morap::kLastNode));
 }
 
 Exit report(morap::drive::BusCode code, BusAddress address, const Rig<BusPort>& rig) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/checks.hpp"
 #include "cli/morap/bus_session.hpp"
 #include "cli/morap/commands.hpp"
 #include "harness/capture/message_json.hpp"
@@ -160,7 +161,7 @@ void add_address(CLI::App& command, Options& options) {
   command.add_option("ADDRESS", options.address, "seven bits, as in 0x12")
       ->required()
       ->type_name("")
-      ->check(CLI::Range(0, 0x7F));
+      ->transform(whole(0, 0x7F));
 }
 
 }  // namespace
@@ -174,7 +175,7 @@ void add_i2c(CLI::App& app, const Device& device, Action& action) {
   add_address(*reading, *options);
   reading->add_option("COUNT", options->count, "how many bytes (default: 1)")
       ->type_name("")
-      ->check(CLI::Range(std::size_t{1}, kLongestRead));
+      ->transform(whole(1, kLongestRead));
   reading
       ->add_option("--select", options->select,
                    "write these bytes first, in a transaction of their own")

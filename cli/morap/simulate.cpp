@@ -7,16 +7,17 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cli/checks.hpp"
 #include "cli/morap/arguments.hpp"
 #include "cli/outputs.hpp"
 #include "emulators/morap/step_response.hpp"
 #include "harness/drive/morap/parameter_file.hpp"
+#include "harness/files/user_file.hpp"
 #include "harness/report/report.hpp"
 #include "harness/report/wording.hpp"
 
@@ -80,16 +81,20 @@ Outcome<StepTest> test_of(const Options& options) {
 }
 
 Outcome<std::vector<PlotPoint>> read_recording(const std::string& path) {
-  std::ifstream in{path};
-  if (!in) return problem(ErrorCode::kCannotRead, path, "check the path and its permissions");
+  auto file = UserFile::open(path);
+  if (!file) return tl::unexpected{file.error()};
   std::vector<PlotPoint> points;
-  for (std::string line; std::getline(in, line);) {
+  while (true) {
+    const auto line = file->next_line();
+    if (!line) return tl::unexpected{line.error()};
+    if (!*line) break;
     PlotPoint point;
-    const auto* const end = line.data() + line.size();
-    const auto [comma, no_time] = std::from_chars(line.data(), end, point.x);
+    const auto* const end = (*line)->data() + (*line)->size();
+    const auto [comma, no_time] = std::from_chars((*line)->data(), end, point.x);
     if (no_time != std::errc{} || comma == end || *comma != ',') continue;
     const auto [_, no_value] = std::from_chars(comma + 1, end, point.y);
-    if (no_value == std::errc{}) points.push_back(point);
+    const bool is_finite = std::isfinite(point.x) && std::isfinite(point.y);
+    if (no_value == std::errc{} && is_finite) points.push_back(point);
   }
   if (!points.empty()) return points;
   return problem(ErrorCode::kMalformed, path, "there is no line 'seconds,value' in it");
@@ -195,7 +200,7 @@ void add_plant_options(CLI::App& command, Options& options) {
                               double least, double most) {
     command.add_option(name, value, what)
         ->type_name(unit)
-        ->check(CLI::Range(least, most))
+        ->check(number(least, most))
         ->capture_default_str();
   };
   add("--seconds", options.seconds, "how long", "S", 0.01, 600);
@@ -211,7 +216,7 @@ void add_morap_simulate(CLI::App& morap, Action& action) {
   auto* command = morap.add_subcommand("simulate", kHelp);
   const auto options = std::make_shared<Options>();
   const auto tuning = add_tune_options(*command, options->tuning);
-  tuning.inertia->required()->check(CLI::Range(1e-5, 10.0));
+  tuning.inertia->required();
   auto* params = command
                      ->add_option("--params", options->params,
                                   "a file with the controller, instead of --type and --pole")
@@ -221,6 +226,7 @@ void add_morap_simulate(CLI::App& morap, Action& action) {
   add_motor_option(*command, options->motor);
   command->add_option("--step", options->step, "to where: rad, or rad/s of speed control; not 0")
       ->type_name("VALUE")
+      ->check(number(-1e3, 1e3))
       ->capture_default_str();
   add_plant_options(*command, *options);
   command->add_option("--csv", options->csv, "write all samples to this file")->type_name("FILE");
@@ -235,7 +241,7 @@ void add_morap_simulate(CLI::App& morap, Action& action) {
     if (params->count() == 0 && !has_tuning) {
       throw CLI::ValidationError{"morap simulate", "say --type and --pole, or --params"};
     }
-    if (options->step == 0 || !std::isfinite(options->step)) {
+    if (options->step == 0) {
       throw CLI::ValidationError{"--step", "a step of that size shows nothing"};
     }
     action = [options] { return simulate(*options); };

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <fstream>
-#include <iostream>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
+#include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "harness/arm/orientation.hpp"
+#include "harness/files/user_file.hpp"
 #include "harness/motion/parol6/joint_table.hpp"
 #include "harness/script/check.hpp"
 #include "harness/script/parser.hpp"
@@ -58,16 +58,9 @@ script::Dialect dialect_of(const ScriptOptions& options) {
 }
 
 Outcome<std::string> read_script_text(const ScriptOptions& options) {
-  std::ifstream file;
   const bool is_stdin = options.file == "-";
-  if (!is_stdin) file.open(options.file, std::ios::binary);
-  auto& in = is_stdin ? static_cast<std::istream&>(std::cin) : file;
-  if (!in) return problem(ErrorCode::kCannotRead, options.file, "check path and permissions");
-  std::string text(script::kMostBytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) return problem(ErrorCode::kCannotRead, options.file, "is it a folder?");
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
+  return (is_stdin ? UserFile::standard_input() : UserFile::open(options.file))
+      .and_then([](UserFile file) { return file.rest(script::kMostBytes); });
 }
 
 tl::expected<script::Program, Exit> read_script(const ScriptOptions& options) {
@@ -111,10 +104,10 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
       ->check(one_of(names))
       ->capture_default_str();
   app.add_option("--loops", options.loops, "passes of a program that ends with Loop()")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
+      ->transform(whole(1, 1'000'000))
       ->capture_default_str();
   app.add_option("--gripper-id", options.gripper_id, "CAN node of the gripper")
-      ->check(CLI::Range(0, 15))
+      ->transform(whole(0, 15))
       ->capture_default_str();
   app.add_option("--from", options.from,
                  "where the plan begins: standby; power-up, all zeros, where joints have no limits "

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/nesting.hpp"
+
 namespace armjig::kinovazed::emulation {
 namespace {
 
@@ -113,6 +115,7 @@ ObjectiveSet published_objectives() {
 }
 
 Outcome<ObjectiveSet> parse_objectives(std::string_view json, const std::string& where) {
+  if (is_too_deep(json)) return problem(ErrorCode::kMalformed, where, std::string{kTooDeep});
   const auto file = Json::parse(json, nullptr, /*allow_exceptions=*/false);
   if (!file.is_array()) {
     return problem(ErrorCode::kMalformed, where,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/morap/options.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -34,7 +36,13 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
     {{"nodes", "0..16,...", "identifiers of the nodes; 2 if not given"},
      [](Settings& to, const OptionValue& value) {
        to.ids.emplace();
-       return value.each([&](const auto& one) { return one.take(to.ids->emplace_back()); });
+       return value.each([&](const auto& one) { return one.take(to.ids->emplace_back()); })
+           .and_then([&]() -> Outcome<void> {
+             auto ids = *to.ids;
+             std::ranges::sort(ids);
+             if (std::ranges::adjacent_find(ids) == ids.end()) return {};
+             return value.take(problem(ErrorCode::kBadValue, "", "no node can be there twice"));
+           });
      }},
     {{"pen", "yes|no", "whether there is a pen end-effector; no if not given"},
      [](Settings& to, const OptionValue& value) {
@@ -53,15 +61,15 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
      [](Settings& to, const OptionValue& value) {
        return value.choose(to.node.profile, {kFirmware, kDocumented});
      }},
-    {{"inertia", "1e-5..", "at the output shaft in kg m^2; 0.05 if not given"},
+    {{"inertia", "1e-5..1000", "at the output shaft in kg m^2; 0.05 if not given"},
      [](Settings& to, const OptionValue& value) { return value.take(to.node.inertia); }},
-    {{"viscous", "0..", "viscous friction in N m s/rad; 0.1 if not given"},
+    {{"viscous", "0..1000", "viscous friction in N m s/rad; 0.1 if not given"},
      [](Settings& to, const OptionValue& value) { return value.take(to.node.viscous); }},
-    {{"dry", "0..", "dry friction in N m; 0 if not given"},
+    {{"dry", "0..1000", "dry friction in N m; 0 if not given"},
      [](Settings& to, const OptionValue& value) { return value.take(to.node.dry); }},
-    {{"load", "..", "constant torque on the shaft in N m; 0 if not given"},
+    {{"load", "-1000..1000", "constant torque on the shaft in N m; 0 if not given"},
      [](Settings& to, const OptionValue& value) { return value.take(to.node.load); }},
-    {{"shunt", "0..", "of the current sense in ohm; 820 if not given, as nodes believe"},
+    {{"shunt", "0..1000000", "of the current sense in ohm; 820 if not given, as nodes believe"},
      [](Settings& to, const OptionValue& value) { return value.take(to.node.shunt); }},
     {{"has-shaft", "yes|no", "no: nothing turns, whatever the voltage"},
      [](Settings& to, const OptionValue& value) {
@@ -126,7 +134,11 @@ Outcome<void> add(const OptionGroup& group, Settings settings, BusSettings& bus)
     return problem(ErrorCode::kBadValue, group.where, std::string{kind->needed} + " is missing");
   }
   kind->add(bus, settings);
-  return {};
+  const bool is_twice = !bus.nodes.empty() && group.kind == "node" &&
+                        std::ranges::count(bus.nodes, bus.nodes.back().id, &NodeSettings::id) > 1;
+  if (!is_twice) return {};
+  return problem(ErrorCode::kBadValue, group.where,
+                 fmt::format("node {} is there twice", settings.node.id));
 }
 
 DefectiveNode make_node(const NodeSettings& settings) {

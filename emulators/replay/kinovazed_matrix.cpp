@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "emulators/kinovazed/server.hpp"
+#include "harness/core/nesting.hpp"
 
 namespace armjig::kinovazed::replay {
 namespace {
@@ -181,6 +182,7 @@ auto malformed(const std::string& where, std::string_view what) {
 }  // namespace
 
 Outcome<TableVerdict> verify_matrix(std::string_view text, const std::string& where) {
+  if (is_too_deep(text)) return malformed(where, kTooDeep);
   const auto table = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   const bool is_table = table.is_object() && table.value("format", Json{}) == kFormat &&
                         table.value("entries", Json{}).is_array();

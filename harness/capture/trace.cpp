@@ -4,14 +4,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "harness/core/hex.hpp"
+#include "harness/core/nesting.hpp"
+#include "harness/files/user_file.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
@@ -82,11 +82,13 @@ auto malformed(const std::string& path, std::size_t line, std::string what) {
 
 Json parse_object(std::string_view line) {
   auto json = Json::parse(line, nullptr, /*allow_exceptions=*/false);
-  return json.is_object() ? json : Json{};
+  if (!json.is_object()) return {};
+  return json;
 }
 
 Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
                                 std::string_view line) {
+  if (is_too_deep(line)) return malformed(path, number, std::string{kTooDeep});
   const auto json = parse_object(line);
   if (json.is_null()) return malformed(path, number, "the line is not a JSON object");
   LineReader reader{json};
@@ -118,6 +120,44 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
   if (!reader.complaint().empty()) return malformed(path, number, reader.complaint());
   return event;
 }
+
+/// Grows by one line after the other.
+class TraceBuilder {
+ public:
+  explicit TraceBuilder(std::string path) { trace_.path = std::move(path); }
+
+  Outcome<void> take(std::string_view line) {
+    ++number_;
+    if (number_ == 1) return take_header(line);
+    if (line.empty()) return {};
+    auto event = parse_event(trace_.path, number_, line);
+    if (!event) return tl::unexpected{std::move(event).error()};
+    if (!trace_.events.empty() && event->time < trace_.events.back().time) {
+      return malformed(trace_.path, number_, "the time runs backwards");
+    }
+    trace_.events.push_back(*std::move(event));
+    return {};
+  }
+
+  [[nodiscard]] Trace trace() && { return std::move(trace_); }
+
+ private:
+  Outcome<void> take_header(std::string_view line) {
+    trace_.header = line;
+    if (is_too_deep(line)) return malformed(trace_.path, 1, std::string{kTooDeep});
+    const auto header = parse_object(line);
+    if (header.is_null() || header.value("format", Json{}) != "golden-trace/1") {
+      return malformed(trace_.path, 1, R"(the first line is not a "golden-trace/1" header)");
+    }
+    LineReader reader{header};
+    trace_.device = reader.text("device");
+    if (trace_.device.empty()) return malformed(trace_.path, 1, "\"device\" is missing");
+    return {};
+  }
+
+  Trace trace_;
+  std::size_t number_ = 0;
+};
 
 /// Cuts lines off the front of a text; a carriage return before the line end goes with it.
 std::string_view next_line(std::string_view& rest) {
@@ -155,42 +195,33 @@ std::optional<Message> sole_message(MakeDissector make_dissector, const TraceEve
 }  // namespace
 
 Outcome<Trace> parse_trace(std::string path, std::string_view text) {
-  Trace trace;
-  trace.path = std::move(path);
-  trace.header = next_line(text);
-  const auto header = parse_object(trace.header);
-  if (header.is_null() || header.value("format", Json{}) != "golden-trace/1") {
-    return malformed(trace.path, 1, R"(the first line is not a "golden-trace/1" header)");
-  }
-  LineReader reader{header};
-  trace.device = reader.text("device");
-  if (trace.device.empty()) return malformed(trace.path, 1, "\"device\" is missing");
-  std::size_t number = 1;
-  while (!text.empty()) {
-    ++number;
-    const auto line = next_line(text);
-    if (line.empty()) continue;
-    auto event = parse_event(trace.path, number, line);
-    if (!event) return tl::unexpected{std::move(event).error()};
-    if (!trace.events.empty() && event->time < trace.events.back().time) {
-      return malformed(trace.path, number, "the time runs backwards");
+  TraceBuilder builder{std::move(path)};
+  do {
+    if (auto taken = builder.take(next_line(text)); !taken) {
+      return tl::unexpected{std::move(taken.error())};
     }
-    trace.events.push_back(*std::move(event));
-  }
-  return trace;
+  } while (!text.empty());
+  return std::move(builder).trace();
 }
 
 Outcome<Trace> read_trace(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    return problem(ErrorCode::kCannotRead, path, "it is a folder");
+  std::error_code error;
+  if (!std::filesystem::exists(path, error) && !error) {
+    return problem(ErrorCode::kNotFound, path, "check the path");
   }
-  errno = 0;
-  std::ifstream in{path, std::ios::binary};
-  if (!in) return problem(error_from_errno(errno).code, path, "check the path");
-  const std::string text{std::istreambuf_iterator<char>{in}, {}};
-  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "check the file");
-  return parse_trace(path, text);
+  return UserFile::open(path).and_then([&path](UserFile file) { return read_trace(file, path); });
+}
+
+Outcome<Trace> read_trace(UserFile& file, std::string path) {
+  TraceBuilder builder{std::move(path)};
+  while (true) {
+    const auto line = file.next_line();
+    if (!line) return tl::unexpected{line.error()};
+    if (!*line && file.line_number() > 1) return std::move(builder).trace();
+    if (auto taken = builder.take(line->value_or("")); !taken) {
+      return tl::unexpected{std::move(taken.error())};
+    }
+  }
 }
 
 Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& paths) {

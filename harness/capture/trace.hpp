@@ -14,6 +14,8 @@
 
 namespace armjig {
 
+class UserFile;
+
 /// One line of a `golden-trace/1` file behind the header. Keys that a line does not have stay at
 /// their defaults; keys that nobody knows are passed over.
 struct TraceEvent {
@@ -38,6 +40,9 @@ struct Trace {
 
 /// Reads a recording. Problems name `path:line`.
 [[nodiscard]] Outcome<Trace> read_trace(const std::string& path);
+
+/// The same from a file that is open; `path` is for messages.
+[[nodiscard]] Outcome<Trace> read_trace(UserFile& file, std::string path);
 
 /// The same from text in memory; `path` is for messages.
 [[nodiscard]] Outcome<Trace> parse_trace(std::string path, std::string_view text);

@@ -9,7 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "harness/config/option_file.hpp"
+#include "harness/core/nesting.hpp"
+#include "harness/files/user_file.hpp"
 
 namespace armjig {
 
@@ -46,6 +47,18 @@ std::string option_value(const toml::node& node) {
   return {};
 }
 
+/// Whether a key has so many dots that the tables below it would be too deep for whoever frees
+/// them. Nothing is lost: keys of ours have none.
+bool has_endless_key(std::string_view text) {
+  while (!text.empty()) {
+    const auto line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    const auto key = line.substr(0, line.find_first_of("=#"));
+    if (std::ranges::count(key, '.') > static_cast<std::ptrdiff_t>(kDeepestNesting)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 TomlTable::TomlTable(std::shared_ptr<File> file, std::shared_ptr<Part> part)
@@ -54,10 +67,13 @@ TomlTable::TomlTable(std::shared_ptr<File> file, std::shared_ptr<Part> part)
 }
 
 Outcome<TomlTable> TomlTable::read(const std::string& path) {
-  return read_text(path).and_then([&](const std::string& text) { return parse(text, path); });
+  return read_user_file(path).and_then([&](const std::string& text) { return parse(text, path); });
 }
 
 Outcome<TomlTable> TomlTable::parse(std::string_view text, std::string path) {
+  if (has_endless_key(text)) {
+    return problem(ErrorCode::kMalformed, std::move(path), std::string{kTooDeep});
+  }
   auto file = std::make_shared<File>();
   file->path = std::move(path);
   try {

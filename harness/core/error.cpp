@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, kErrorCodeCount> kSentences{
     "not a target",
     "no such device is known here",
     "no such option",
-    "the value is out of range or of the wrong form",
+    "cannot be used",
     "there is nothing at that place",
     "permission denied",
     "in use by another program",

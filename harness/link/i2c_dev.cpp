@@ -98,6 +98,11 @@ const OpenHints kHints{
 
 Outcome<std::unique_ptr<BusPort>> open_i2c_dev(const std::string& path) {
   Descriptor descriptor{::open(path.c_str(), O_RDWR | O_CLOEXEC)};
+  const bool is_named = !path.empty() && (descriptor.is_open() || errno != EISDIR);
+  if (!is_named) {
+    return problem(ErrorCode::kBadTarget, "i2c:" + path,
+                   "it is not an I2C bus; write i2c:/dev/i2c-N");
+  }
   if (!descriptor.is_open()) return problem_of_open(path, error_from_errno(errno), kHints);
   unsigned long functions = 0;
   if (::ioctl(descriptor.value(), I2C_FUNCS, &functions) < 0) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "harness/core/nesting.hpp"
 #include "harness/report/wording.hpp"
 
 namespace armjig {
@@ -18,6 +19,7 @@ Outcome<Verdicts> read(std::string_view text, const std::string& name) {
   const auto not_a_report = [&name] {
     return problem(ErrorCode::kMalformed, name, "it is no armjig.report/1, which --json writes");
   };
+  if (is_too_deep(text)) return problem(ErrorCode::kMalformed, name, std::string{kTooDeep});
   const auto json = Json::parse(text, nullptr, false);
   if (!json.is_object() || json.value("schema", Json{}) != "armjig.report/1") {
     return not_a_report();

@@ -43,7 +43,11 @@ Outcome<Target> parse_target(std::string_view text) {
     if (equals == 0 || equals == std::string_view::npos) {
       return bad_target(text, "write options as ?NAME=VALUE&NAME=VALUE");
     }
-    target.options[std::string{option.substr(0, equals)}] = option.substr(equals + 1);
+    const auto name = option.substr(0, equals);
+    if (target.options.contains(name)) {
+      return bad_target(text, fmt::format("it says {} twice", name));
+    }
+    target.options[std::string{name}] = option.substr(equals + 1);
     rest = end == std::string_view::npos ? "" : rest.substr(end + 1);
   }
   if (target.is_emulated() && !target.address.empty()) {

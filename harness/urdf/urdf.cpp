@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <fstream>
-#include <iterator>
+#include <string_view>
+#include <utility>
 #include <vector>
+
+#include "harness/core/nesting.hpp"
+#include "harness/files/user_file.hpp"
 
 namespace armjig::arm {
 namespace {
@@ -44,9 +47,58 @@ std::vector<urdf::LinkSharedPtr> leaves_of(const urdf::ModelInterface& model) {
 }
 
 std::string names_of(const std::vector<urdf::LinkSharedPtr>& links) {
+  constexpr std::size_t kMostNames = 10;
   std::string names;
-  for (const auto& link : links) names += (names.empty() ? "" : ", ") + link->name;
+  for (std::size_t i = 0; i < std::min(links.size(), kMostNames); ++i) {
+    names += (names.empty() ? "" : ", ") + links[i]->name;
+  }
+  if (links.size() > kMostNames) names += fmt::format(" and {} more", links.size() - kMostNames);
   return names;
+}
+
+constexpr std::string_view kNoRobot = "it is not a robot description (URDF)";
+
+/// The text behind the next `mark`; empty if there is none.
+std::string_view after(std::string_view text, std::string_view mark) {
+  const auto found = text.find(mark);
+  return found == std::string_view::npos ? "" : text.substr(found + mark.size());
+}
+
+/// What stands before the next `>` that is not in quotes.
+std::string_view tag_of(std::string_view text) {
+  std::size_t end = 0;
+  for (char quote = 0; end < text.size() && (quote != 0 || text[end] != '>'); ++end) {
+    const bool is_quote = text[end] == '"' || text[end] == '\'';
+    if (text[end] == quote) {
+      quote = 0;
+    } else if (quote == 0 && is_quote) {
+      quote = text[end];
+    }
+  }
+  return text.substr(0, end);
+}
+
+/// Why a text is not given to the XML parser, which recurses; empty if it is. Of what is no XML
+/// nothing is promised.
+std::string objection_to(std::string_view xml) {
+  constexpr std::size_t kMostElements = 100'000;
+  std::size_t depth = 0;
+  std::size_t elements = 0;
+  for (auto rest = after(xml, "<"); !rest.empty(); rest = after(rest, "<")) {
+    if (rest.starts_with("!--")) {
+      rest = after(rest, "-->");
+    } else if (rest.starts_with("![CDATA[")) {
+      rest = after(rest, "]]>");
+    } else if (rest.starts_with('/')) {
+      depth -= depth > 0 ? 1 : 0;
+    } else if (!rest.starts_with('?') && !rest.starts_with('!')) {
+      const bool is_whole = tag_of(rest).ends_with('/');
+      if (++elements > kMostElements) return fmt::format("it has over {} elements", kMostElements);
+      depth += is_whole ? 0 : 1;
+      if (depth > kDeepestNesting) return std::string{kTooDeep};
+    }
+  }
+  return {};
 }
 
 Outcome<urdf::LinkSharedPtr> find_tip(const std::string& path, const urdf::ModelInterface& model,
@@ -124,6 +176,10 @@ Outcome<Arm> arm_to(const std::string& path, const urdf::ModelInterface& model,
 }  // namespace
 
 Outcome<Arm> arm_from_urdf(const std::string& path, const std::string& xml, std::string_view tip) {
+  if (auto objection = objection_to(xml); !objection.empty()) {
+    if (xml.find("<robot") == std::string::npos) objection = kNoRobot;
+    return problem(ErrorCode::kMalformed, path, std::move(objection));
+  }
   console_bridge::noOutputHandler();  // what is wrong is said once, by us
   urdf::ModelInterfaceSharedPtr model;
   try {
@@ -131,7 +187,7 @@ Outcome<Arm> arm_from_urdf(const std::string& path, const std::string& xml, std:
   } catch (const std::exception&) {  // urdfdom throws what its parsers of numbers throw
   }
   if (!model || !model->getRoot()) {
-    return problem(ErrorCode::kMalformed, path, "it is not a robot description (URDF)");
+    return problem(ErrorCode::kMalformed, path, std::string{kNoRobot});
   }
   const auto end = find_tip(path, *model, tip);
   if (!end) return tl::unexpected{end.error()};
@@ -139,11 +195,8 @@ Outcome<Arm> arm_from_urdf(const std::string& path, const std::string& xml, std:
 }
 
 Outcome<Arm> read_urdf(const std::string& path, std::string_view tip) {
-  std::ifstream in{path, std::ios::binary};
-  if (!in) return problem(ErrorCode::kCannotRead, path, "check the path and its permissions");
-  const std::string xml{std::istreambuf_iterator<char>{in}, {}};
-  if (in.bad()) return problem(ErrorCode::kCannotRead, path, "it is a folder or cannot be read");
-  return arm_from_urdf(path, xml, tip);
+  return read_user_file(path).and_then(
+      [&](const std::string& xml) { return arm_from_urdf(path, xml, tip); });
 }
 
 }  // namespace armjig::arm

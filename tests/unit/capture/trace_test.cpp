@@ -125,6 +125,16 @@ TEST(Trace, RefusesAHeaderWithoutDevice) {
             R"(x:1 "device" is missing)");
 }
 
+TEST(Trace, RefusesWhatIsNestedTooDeep) {
+  const auto deep = std::string(200'000, '[') + std::string(200'000, ']');
+  const auto with = [&deep](const std::string& line) {
+    return line.substr(0, line.size() - 1) + ",\"x\":" + deep + "}";
+  };
+  EXPECT_EQ(refusal(parse_trace("x", with(kHeader))), "x:1 it is nested more than 64 levels deep");
+  EXPECT_EQ(refusal(parse(with(R"({"t_us":5,"dir":"to_device","hex":"ff"})"))),
+            "x.jsonl:2 it is nested more than 64 levels deep");
+}
+
 TEST(Trace, NamesTheLineThatIsNoObject) {
   const std::string good = R"({"t_us":5,"dir":"to_device","hex":"ff"})"
                            "\n";

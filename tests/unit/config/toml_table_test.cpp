@@ -65,6 +65,17 @@ TEST(TomlTable, NamesTheLineThatIsNoToml) {
   EXPECT_THAT(table.error().where, HasSubstr("a.toml:2"));
 }
 
+TEST(TomlTable, RefusesKeysOfEndlessTables) {
+  std::string endless;
+  for (int i = 0; i < 200'000; ++i) endless += "a.";
+  for (const auto& text : {endless + "b = 1", "\n[" + endless + "b]\nx = 1"}) {
+    const auto table = TomlTable::parse(text, "a.toml");
+    ASSERT_FALSE(table);
+    EXPECT_THAT(table.error().hint, HasSubstr("levels deep"));
+  }
+  EXPECT_TRUE(TomlTable::parse("a = 1 # " + endless, "a.toml"));
+}
+
 TEST(TomlTable, NamesAFileThatIsNotThere) {
   EXPECT_EQ(TomlTable::read("/nonexistent").error().code, ErrorCode::kCannotRead);
 }

@@ -36,6 +36,8 @@ TEST(Error, TellsAUserWhatWhereAndWhatToDoInOneLine) {
   EXPECT_EQ(describe(Problem{ErrorCode::kBusy, "/dev/ttyACM0", "close the other program"}),
             "/dev/ttyACM0: in use by another program; close the other program");
   EXPECT_EQ(describe(Problem{ErrorCode::kTimedOut, "", ""}), "no answer in time");
+  EXPECT_EQ(describe(Problem{ErrorCode::kBadValue, "--x is missing", "write --x 1"}),
+            "--x is missing; write --x 1");
 }
 
 }  // namespace

@@ -28,10 +28,11 @@ struct Room {
 constexpr Room kRooms[] = {
     {"harness/core", ""},
     {"harness/wire", "harness/core"},
-    {"harness/capture", "harness/core harness/wire"},
+    {"harness/files", "harness/core"},
+    {"harness/capture", "harness/core harness/wire harness/files"},
     {"harness/arm", "harness/core"},
-    {"harness/urdf", "harness/core harness/arm"},
-    {"harness/config", "harness/core"},
+    {"harness/urdf", "harness/core harness/files harness/arm"},
+    {"harness/config", "harness/core harness/files"},
     {"harness/link", "harness/core"},
     {"harness/timing", "harness/core"},
     {"harness/motion", "harness/core harness/wire harness/arm"},
@@ -59,8 +60,9 @@ constexpr Room kRooms[] = {
     {"emulators/host", "harness/core harness/link harness/timing emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},
     {"conformance",
-     "harness/core harness/wire harness/config harness/link harness/drive harness/rig "
-     "harness/report emulators/faults emulators/kinovazed emulators/morap emulators/parol6 "
+     "harness/core harness/wire harness/files harness/config harness/link harness/drive "
+     "harness/rig harness/report emulators/faults emulators/kinovazed emulators/morap "
+     "emulators/parol6 "
      "emulators/memory"},
     {"cli/devices", "cli harness emulators conformance"},
     {"cli", "harness emulators conformance"},

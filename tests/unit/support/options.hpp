@@ -46,7 +46,7 @@ inline void expect_documented_values(
     for (const auto& end : {low, high}) {
       if (!end.empty()) expect_taken(name, end);
     }
-    if (!low.empty()) expect_refused(name, "-1");
+    if (!low.empty()) expect_refused(name, low.starts_with('-') ? "-1" + low.substr(1) : "-1");
     if (!high.empty()) expect_refused(name, "1" + high);
     for (const auto* wrong : {"nan", "inf", "1x", " 1", "0x1", "1e999"})
       expect_refused(name, wrong);

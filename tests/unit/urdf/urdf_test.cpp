@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/urdf/urdf.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,6 +102,26 @@ TEST(Urdf, SaysWhatIsWrongInOneSentence) {
               HasSubstr("lower limit is above"));
   EXPECT_THAT(problem_with(with(kParol6, "parent link=\"f\"", "parent link=\"e\"")),
               HasSubstr("one of: f, finger"));
+}
+
+TEST(Urdf, HasDepthAndSizeWithinReason) {
+  std::string deep = "<robot name='r'>";
+  for (int i = 0; i < 200'000; ++i) deep += "<a>";
+  EXPECT_THAT(problem_with(deep, ""), HasSubstr("levels deep"));
+  std::string wide = "<robot name='r'>";
+  for (int i = 0; i < 100'000; ++i) wide += "<link name='>'/>";
+  EXPECT_THAT(problem_with(wide + "</robot>", ""), HasSubstr("over 100000 elements"));
+}
+
+TEST(Urdf, ManyEndsAreNotAllNamed) {
+  std::string star = "<robot name='r'><link name='base'/>";
+  for (int i = 0; i < 30; ++i) {
+    star += fmt::format(
+        "<link name='l{0}'/><joint name='j{0}' type='fixed'><parent link='base'/>"
+        "<child link='l{0}'/></joint>",
+        i);
+  }
+  EXPECT_THAT(problem_with(star + "</robot>", ""), HasSubstr("and 20 more"));
 }
 
 TEST(Urdf, FilesThatAreNotThereCannotBeRead) {
