@@ -2,6 +2,7 @@
 #include "cli/candidates.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <string_view>
 
 #include "cli/choice.hpp"

@@ -181,7 +181,8 @@ TEST(ParseImpairment, RefusesEachMistakeInOneLineThatSaysWhatToDo) {
 
 TEST(ParseImpairment, NamesTheOptionsToWhomItRefusesOne) {
   EXPECT_EQ(refusal("los=1%"),
-            "impairment 'los=1%': no such option; known: chunk, bit-errors, loss, double, reorder, "
+            "impairment 'los=1%': no such option; did you mean 'loss'? known: chunk, bit-errors, "
+            "loss, double, reorder, "
             "split, merge, delay, bandwidth, stall, disconnect, disconnect-after, seed");
 }
 
