@@ -98,7 +98,7 @@ class Server {
  private:
   /// What the event loop of the network thread has to do; first come, first served.
   struct Task {
-    enum class Kind : std::uint8_t { kAccept, kRead, kPush, kWritten, kBeat };
+    enum class Kind : std::uint8_t { kAccept, kRead, kPush, kWritten, kPoll, kBeat };
     Kind kind{};
     bool was_written = false;  ///< of `kWritten`
     ServerMessage message;     ///< of `kPush`
@@ -165,6 +165,7 @@ class Server {
   bool is_connected_ = false;  ///< as the server believes
   bool is_read_armed_ = false;
   bool may_hold_line_ = false;  ///< behind the one that was served
+  int failed_writes_ = 0;       ///< on the connection that is served
   int silent_resets_ = 0;       ///< see `Behaviour::dies_of_resets`
   std::deque<ServerMessage> outbox_;
   Instant beat_due_{};

@@ -111,6 +111,22 @@ TEST(KinovaServer, GoesMuteIfTwoMessagesWaitWhenAWriteFails) {
   }
 }
 
+TEST(KinovaServer, GoesMuteOfFiveLinesOfAClientThatWaitedAndHasClosed) {
+  // The first write is taken, two fail at once, and behind the fourth the fifth message waits. So
+  // does a small server on the event loop of the original.
+  for (const auto count : {4, 5, 6, 25}) {
+    Bench bench;
+    bench.to_idle();
+    const auto second = bench.connect();
+    for (int i = 0; i < count; ++i) bench.send(second, "Unfold\r\n");
+    bench.server.close(bench.now, second);
+    bench.server.close(bench.now, bench.client);
+    bench.pass(200ms);
+    bench.client = bench.connect();
+    EXPECT_EQ(bench.ask("EStop\r\n"), count < 5 ? kAccepted : "") << count;
+  }
+}
+
 TEST(KinovaServer, StopsNothingWhenItsClientLeaves) {
   Bench bench;
   bench.to_idle().go({"SetJoystickMode:XYZ", "MoveJoystick:0:0:40"});
