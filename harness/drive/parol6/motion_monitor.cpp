@@ -66,6 +66,8 @@ MotionMonitor::Findings MotionMonitor::observe(Instant now, const CommandFrame& 
       const bool is_too_late = should_stand(command.command) && now - began_ > kStopGrace;
       if (is_too_late && !has_moved_on_) findings.still_moves = j;
     } else {
+      // One that stood for long because nobody led it owes from now on.
+      if (joint.due_steps == 0.0 && speed != 0.0) joint.moved = now;
       joint.due_steps = speed == 0.0 ? 0.0 : joint.due_steps + std::abs(speed) * elapsed;
       const bool is_stalled = joint.due_steps > kOwedSteps && now - joint.moved > kStallTime;
       if (is_stalled && !has_stalled_) findings.stalled = j;
