@@ -17,9 +17,11 @@ namespace {
 constexpr int kKilledBySignal = 128;  // as shells say it
 
 std::atomic<pid_t> child{0};
+std::atomic<int> early{0};  ///< a signal that came before the child was known
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 
 void hand_on(int signal) {
+  early = signal;
   if (const pid_t pid = child.load(); pid > 0) ::kill(pid, signal);
 }
 
@@ -27,6 +29,7 @@ void hand_on(int signal) {
 class SignalsOfProgram {
  public:
   SignalsOfProgram() {
+    early = 0;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
       struct sigaction action{};
       action.sa_handler = i < kFromTerminal ? SIG_IGN : hand_on;
@@ -77,7 +80,6 @@ std::vector<std::string> changed_environment(const std::vector<std::string>& cha
   return all;
 }
 
-/// A signal that comes before it is known whom to hand it to waits for that.
 int spawn(std::vector<std::string> arguments, std::vector<std::string> environment) {
   const auto argv = pointers_to(arguments);
   const auto envp = pointers_to(environment);
@@ -85,14 +87,11 @@ int spawn(std::vector<std::string> arguments, std::vector<std::string> environme
   posix_spawnattr_init(&attributes);
   const auto signals = SignalsOfProgram::set();
   posix_spawnattr_setsigdefault(&attributes, &signals);
-  sigset_t before;
-  ::pthread_sigmask(SIG_BLOCK, &signals, &before);
-  posix_spawnattr_setsigmask(&attributes, &before);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t pid = 0;
   const int error = ::posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), envp.data());
   if (error == 0) child = pid;
-  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (const int signal = early.exchange(0); signal != 0) hand_on(signal);
   posix_spawnattr_destroy(&attributes);
   return error;
 }
