@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/morap/options.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -41,7 +39,8 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
              auto ids = *to.ids;
              std::ranges::sort(ids);
              if (std::ranges::adjacent_find(ids) == ids.end()) return {};
-             return value.take(problem(ErrorCode::kBadValue, "", "no node can be there twice"));
+             return value.take(problem(ErrorCode::kBadValue, "",
+                                       "a node is said twice; two with one number are for file="));
            });
      }},
     {{"pen", "yes|no", "whether there is a pen end-effector; no if not given"},
@@ -134,11 +133,7 @@ Outcome<void> add(const OptionGroup& group, Settings settings, BusSettings& bus)
     return problem(ErrorCode::kBadValue, group.where, std::string{kind->needed} + " is missing");
   }
   kind->add(bus, settings);
-  const bool is_twice = !bus.nodes.empty() && group.kind == "node" &&
-                        std::ranges::count(bus.nodes, bus.nodes.back().id, &NodeSettings::id) > 1;
-  if (!is_twice) return {};
-  return problem(ErrorCode::kBadValue, group.where,
-                 fmt::format("node {} is there twice", settings.node.id));
+  return {};
 }
 
 DefectiveNode make_node(const NodeSettings& settings) {
