@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "conformance/requirement.hpp"
@@ -99,15 +100,41 @@ class Bench {
   std::mt19937 random_;
 };
 
-/// A case body for one kind of bench, as the engine calls it. The suite that has the case also made
-/// the bench, so its kind is known.
-template <auto body>
-struct OnBench;
-template <class Kind, void (*body)(Kind&)>
-struct OnBench<body> {
-  static void run(Bench& bench) { body(static_cast<Kind&>(bench)); }
+/// The body of a case, as the engine calls it: a lambda without captures, or `on<function>`, whose
+/// parameter is the bench of its device. The suite that has the case also made the bench, so its
+/// kind is known.
+class CaseBody {
+ public:
+  constexpr CaseBody() = default;
+  constexpr CaseBody(void (*function)(Bench&)) noexcept : run_{function} {}  // NOLINT(*-explicit-*)
+  template <class Lambda>
+    requires std::is_empty_v<Lambda>
+  constexpr CaseBody(Lambda /*body*/) noexcept  // NOLINT(*-explicit-*)
+      : run_{run<Lambda>} {}
+
+  void operator()(Bench& bench) const { run_(bench); }
+
+ private:
+  // By its type: GCC 12 takes members of two files' lambdas, as arguments of a template, for one.
+  template <class Lambda>
+  static void run(Bench& bench) {
+    call(bench, Lambda{}, &Lambda::operator());
+  }
+  template <class Lambda, class Kind>
+  static void call(Bench& bench, Lambda lambda, void (Lambda::* /*body*/)(Kind&) const) {
+    lambda(static_cast<Kind&>(bench));
+  }
+
+  void (*run_)(Bench&) = nullptr;
 };
-template <auto body>
-inline constexpr auto on = OnBench<body>::run;
+
+template <auto function>
+struct OnBench;
+template <class Kind, void (*function)(Kind&)>
+struct OnBench<function> {
+  static void run(Bench& bench) { function(static_cast<Kind&>(bench)); }
+};
+template <auto function>
+inline constexpr CaseBody on{OnBench<function>::run};
 
 }  // namespace armjig

@@ -67,6 +67,25 @@ struct Document {
 /// A document of docs/spec, by its path there, with its lines when this was built.
 [[nodiscard]] Document shipped_document(std::string_view path) noexcept;
 
+[[nodiscard]] constexpr Requirement must(std::string_view id, std::string_view text,
+                                         std::string_view source,
+                                         Profiles profiles = Profiles::kBoth,
+                                         std::string_view instead = {}) noexcept {
+  return {id, Level::kMust, text, source, profiles, instead};
+}
+[[nodiscard]] constexpr Requirement should(std::string_view id, std::string_view text,
+                                           std::string_view source,
+                                           Profiles profiles = Profiles::kBoth,
+                                           std::string_view instead = {}) noexcept {
+  return {id, Level::kShould, text, source, profiles, instead};
+}
+
+/// One that no case can check on the wire.
+[[nodiscard]] constexpr Requirement unobservable(std::string_view why, Requirement one) noexcept {
+  one.unobservable = why;
+  return one;
+}
+
 /// A row of a report about one, with nothing found.
 [[nodiscard]] ReportRow row_about(const Requirement& requirement, const Document& document);
 

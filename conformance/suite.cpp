@@ -12,6 +12,24 @@ std::string name_of(const Case& one) {
   return fmt::format("{}.{}", one.requirement, one.variant);
 }
 
+Chapter chapter(std::string_view title, std::span<const Clause> clauses) {
+  Chapter chapter{title, {}, {}};
+  for (const auto& clause : clauses) {
+    if (!clause.requirement.id.empty()) {
+      chapter.requirements.push_back(clause.requirement);
+    } else {
+      auto& one = chapter.cases.emplace_back(clause.one);
+      one.requirement = chapter.requirements.back().id;
+      if (one.rule.empty()) one.rule = chapter.requirements.back().text;
+    }
+  }
+  return chapter;
+}
+
+Chapter chapter(std::string_view title, std::span<const Requirement> requirements) {
+  return {title, {requirements.begin(), requirements.end()}, {}};
+}
+
 const Requirement* find_requirement(const Suite& suite, std::string_view id) noexcept {
   for (const auto& chapter : suite.chapters) {
     const auto found = std::ranges::find(chapter.requirements, id, &Requirement::id);

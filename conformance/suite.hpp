@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "conformance/bench.hpp"
 #include "conformance/requirement.hpp"
@@ -16,25 +17,36 @@ enum class Tier : std::uint8_t { kQuick, kFull };
 
 /// A check of one requirement: data, and a short straight body.
 struct Case {
-  std::string_view requirement;
-  std::string_view variant{};   ///< tells cases of one requirement apart; empty if there is one
-  std::string_view rule;        ///< what happens, in one sentence
-  void (*run)(Bench& bench){};  ///< `on<body>`; passes unless it finds something
+  std::string_view requirement{};  ///< `chapter` fills it in: the one above it
+  std::string_view variant{};      ///< tells cases of one requirement apart; empty if there is one
+  std::string_view rule;           ///< what happens, in one sentence
+  CaseBody run;                    ///< passes unless it finds something
   Hazard hazard = Hazard::kObserve;  ///< the worst that it does to a device
   Tier tier = Tier::kQuick;
   std::uint8_t start = 0;  ///< the state that it needs, an index into the suite's
 };
 
-/// A case that starts elsewhere or does more than to look, as a line of a table.
-[[nodiscard]] constexpr Case from(std::uint8_t start, Hazard hazard, std::string_view requirement,
-                                  std::string_view rule, void (*run)(Bench&),
-                                  std::string_view variant = {}) noexcept {
-  return {.requirement = requirement,
-          .variant = variant,
-          .rule = rule,
-          .run = run,
-          .hazard = hazard,
-          .start = start};
+/// A case that starts in the first state and does no more than to look. Without a rule, that of its
+/// requirement is meant.
+[[nodiscard]] constexpr Case look(std::string_view rule, CaseBody run) noexcept {
+  return {.rule = rule, .run = run};
+}
+[[nodiscard]] constexpr Case look(CaseBody run) noexcept { return look({}, run); }
+
+/// One that starts elsewhere or does more.
+[[nodiscard]] constexpr Case from(std::uint8_t start, Hazard hazard, std::string_view rule,
+                                  CaseBody run) noexcept {
+  return {.rule = rule, .run = run, .hazard = hazard, .start = start};
+}
+
+[[nodiscard]] constexpr Case from(std::uint8_t start, Hazard hazard, CaseBody run) noexcept {
+  return from(start, hazard, {}, run);
+}
+
+/// One of several of a requirement.
+[[nodiscard]] constexpr Case variant(std::string_view name, Case one) noexcept {
+  one.variant = name;
+  return one;
 }
 
 /// One that takes too long for quick runs.
@@ -53,12 +65,24 @@ struct StartState {
   Hazard hazard{};  ///< of getting there
 };
 
+/// A line of a chapter: a requirement, or a case that checks the requirement above it.
+struct Clause {
+  Requirement requirement{};  ///< without an id: it is a case
+  Case one{};
+
+  constexpr Clause(const Requirement& that) noexcept  // NOLINT(*-explicit-*)
+      : requirement{that} {}
+  constexpr Clause(const Case& that) noexcept : one{that} {}  // NOLINT(*-explicit-*)
+};
+
 /// Requirements about one topic, and the cases that check them; a section of the specification.
 struct Chapter {
   std::string_view title;
-  std::span<const Requirement> requirements;
-  std::span<const Case> cases;
+  std::vector<Requirement> requirements;
+  std::vector<Case> cases;
 };
+[[nodiscard]] Chapter chapter(std::string_view title, std::span<const Clause> clauses);
+[[nodiscard]] Chapter chapter(std::string_view title, std::span<const Requirement> requirements);
 
 /// All that is known about one device.
 struct Suite {

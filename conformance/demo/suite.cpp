@@ -12,13 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::array kRequirements{
-    Requirement{"demo.query", Level::kMust, "A query is answered with the state.", "made up here"},
-    Requirement{"demo.start", Level::kMust, "A device that is told to start runs.", "made up here"},
-    Requirement{"demo.halt.while-halted", Level::kMust,
-                "A device told to halt while halted stays halted.", "made up here"},
-};
-
 /// The vocabulary: operations out, states back.
 class MachineBench final : public StreamBench {
  public:
@@ -46,38 +39,38 @@ class MachineBench final : public StreamBench {
   }
 };
 
-void query(MachineBench& machine) {
-  machine.send(encode(Operation::kQuery));
-  machine.expect_state(State::kHalted);
-}
+enum Start : std::uint8_t { kHalted };
 
-void start(MachineBench& machine) {
-  machine.send(encode(Operation::kStart));
-  machine.expect_state(State::kRunning);
-}
+constexpr Clause kClauses[] = {
+    must("demo.query", "A query is answered with the state.", "made up here"),
+    look("A halted device says so.",
+         [](MachineBench& machine) {
+           machine.send(encode(Operation::kQuery));
+           machine.expect_state(State::kHalted);
+         }),
 
-void halt_twice(MachineBench& machine) {
-  machine.send(encode(Operation::kHalt));
-  machine.expect_state(State::kHalted);
-}
+    must("demo.start", "A device that is told to start runs.", "made up here"),
+    from(kHalted, Hazard::kMove, "A halted device can be started.",
+         [](MachineBench& machine) {
+           machine.send(encode(Operation::kStart));
+           machine.expect_state(State::kRunning);
+         }),
 
-constexpr std::array kCases{
-    Case{.requirement = "demo.query", .rule = "A halted device says so.", .run = on<query>},
-    Case{.requirement = "demo.start",
-         .rule = "A halted device can be started.",
-         .run = on<start>,
-         .hazard = Hazard::kMove},
-    Case{.requirement = "demo.halt.while-halted",
-         .rule = "Halting twice is the same as once.",
-         .run = on<halt_twice>},
+    must("demo.halt.while-halted", "A device told to halt while halted stays halted.",
+         "made up here"),
+    look("Halting twice is the same as once.",
+         [](MachineBench& machine) {
+           machine.send(encode(Operation::kHalt));
+           machine.expect_state(State::kHalted);
+         }),
 };
 
 constexpr std::array kStarts{StartState{"halted", Hazard::kObserve}};
-constexpr std::array kChapters{Chapter{"The machine", kRequirements, kCases}};
 
 }  // namespace
 
 Suite suite() noexcept {
+  static const std::array kChapters{chapter("The machine", kClauses)};
   return {"demo", "1", kChapters, kStarts, shipped_document("docs/spec/demo.md")};
 }
 

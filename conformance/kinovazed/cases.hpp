@@ -15,7 +15,7 @@
 #include "conformance/kinovazed/ways.hpp"
 #include "conformance/kinovazed/wording.hpp"
 
-/// What the files in cases/ begin with.
+/// What the files in chapters/ begin with.
 namespace armjig::kinovazed::conformance {
 
 using namespace std::chrono_literals;

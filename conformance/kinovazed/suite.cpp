@@ -25,19 +25,19 @@ constexpr std::array kStarts{
 
 Suite suite() noexcept {
   static const std::array kChapters{
-      Chapter{"States", state_requirements(), state_cases()},
-      Chapter{"Connections", connection_requirements(), connection_cases()},
-      Chapter{"Lines", line_requirements(), line_cases()},
-      Chapter{"Long lines and line feeds", long_line_requirements(), long_line_cases()},
-      Chapter{"Replies and events", reply_requirements(), reply_cases()},
-      Chapter{"Interrupts and ends", interrupt_requirements(), interrupt_cases()},
-      Chapter{"Heartbeats", beat_requirements(), beat_cases()},
-      Chapter{"Joystick", joystick_requirements(), joystick_cases()},
-      Chapter{"Objectives", objective_requirements(), objective_cases()},
-      Chapter{"Supervision of the arm", arm_requirements(), arm_cases()},
-      Chapter{"Robustness", robust_requirements(), robust_cases()},
-      Chapter{"Deaths", death_requirements(), death_cases()},
-      Chapter{"Client programs", programs::host_requirements(), {}},
+      state_chapter(),
+      connection_chapter(),
+      line_chapter(),
+      long_line_chapter(),
+      reply_chapter(),
+      interrupt_chapter(),
+      beat_chapter(),
+      joystick_chapter(),
+      objective_chapter(),
+      arm_chapter(),
+      robust_chapter(),
+      death_chapter(),
+      chapter("Client programs", programs::host_requirements()),
   };
   return {"kinovazed", "0.2", kChapters, kStarts, shipped_document("docs/spec/kinovazed.md")};
 }

@@ -59,10 +59,9 @@ void half_close(ServerBench& server);
 void expect_hung(ServerBench& server);
 
 /// A case that begins where its state can be entered; with motion it is not quick.
-[[nodiscard]] constexpr Case in(emulation::State state, std::string_view requirement,
-                                std::string_view rule, void (*run)(Bench&),
-                                std::string_view variant = {}) noexcept {
-  const auto one = from(start_for(state), hazard_of(state), requirement, rule, run, variant);
+[[nodiscard]] constexpr Case in(emulation::State state, std::string_view rule,
+                                CaseBody run) noexcept {
+  const auto one = from(start_for(state), hazard_of(state), rule, run);
   return one.hazard == Hazard::kMove ? full(one) : one;
 }
 

@@ -18,7 +18,7 @@
 #include "emulators/morap/control.hpp"
 #include "harness/core/hex.hpp"
 
-/// What the files in cases/ begin with.
+/// What the files in chapters/ begin with.
 namespace armjig::morap::conformance {
 
 using namespace std::chrono_literals;
@@ -43,9 +43,8 @@ inline void expect_of_zero_rate(NodeBench& node, ProgrammingStatus wanted) {
   node.expect_programming(wanted);
 }
 
-constexpr Case programming(std::string_view requirement, std::string_view rule, void (*run)(Bench&),
-                           Start start = kProgrammable) {
-  return from(start, Hazard::kProgram, requirement, rule, run);
+constexpr Case programming(std::string_view rule, CaseBody run, Start start = kProgrammable) {
+  return from(start, Hazard::kProgram, rule, run);
 }
 
 }  // namespace armjig::morap::conformance

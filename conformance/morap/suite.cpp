@@ -22,18 +22,10 @@ constexpr std::array kStarts{
 
 Suite suite() noexcept {
   static const std::array kChapters{
-      Chapter{"Bus", bus_requirements(), bus_cases()},
-      Chapter{"Reading", reading_requirements(), reading_cases()},
-      Chapter{"Status and identifiers", status_requirements(), status_cases()},
-      Chapter{"References, calibration and angle", reference_requirements(), reference_cases()},
-      Chapter{"Output and ticks", output_requirements(), output_cases()},
-      Chapter{"Programming", program_requirements(), program_cases()},
-      Chapter{"Tuning", tune_requirements(), tune_cases()},
-      Chapter{"Feedback loops", loop_requirements(), loop_cases()},
-      Chapter{"A free shaft", motion_requirements(), motion_cases()},
-      Chapter{"Where the document differs", documented_requirements(), documented_cases()},
-      Chapter{"Pen", pen_requirements(), {}},
-      Chapter{"Masters", programs::host_requirements(), {}},
+      bus_chapter(),        reading_chapter(), status_chapter(),
+      reference_chapter(),  output_chapter(),  program_chapter(),
+      tune_chapter(),       loop_chapter(),    motion_chapter(),
+      documented_chapter(), pen_chapter(),     chapter("Masters", programs::host_requirements()),
   };
   return {"morap", "0.2", kChapters, kStarts, shipped_document("docs/spec/morap.md")};
 }

@@ -26,13 +26,14 @@ const Field& telemetry_field(std::string_view name) {
 
 }  // namespace
 
-CommandFrame with_code(int code) {
+CommandFrame with_code(int code) { return with_code(Command{static_cast<std::uint8_t>(code)}); }
+CommandFrame with_code(Command code) {
   CommandFrame frame;
-  frame.command = Command{static_cast<std::uint8_t>(code)};
+  frame.command = code;
   return frame;
 }
 
-CommandFrame idle() { return with_code(255); }
+CommandFrame idle() { return with_code(Command::kIdle); }
 
 CommandFrame with_speeds(int code, const Speeds& speeds) {
   auto frame = with_code(code);

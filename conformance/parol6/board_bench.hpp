@@ -36,7 +36,8 @@ struct Answer : TelemetryFrame {
 };
 
 // Frames with the board's own check byte, which every profile takes.
-[[nodiscard]] CommandFrame with_code(int code);
+[[nodiscard]] CommandFrame with_code(int code);  ///< any, also one that means nothing
+[[nodiscard]] CommandFrame with_code(Command code);
 [[nodiscard]] CommandFrame idle();
 using Speeds = std::array<int, kJointCount>;  ///< steps/s
 [[nodiscard]] CommandFrame with_speeds(int code, const Speeds& speeds);

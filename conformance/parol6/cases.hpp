@@ -19,10 +19,11 @@
 #include "harness/core/hex.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
-/// What the files in cases/ begin with.
+/// What the files in chapters/ begin with.
 namespace armjig::parol6::conformance {
 
 using namespace std::chrono_literals;
+using enum Command;
 
 // Joints, as indices.
 inline constexpr std::size_t kJ1 = 0;

@@ -131,8 +131,10 @@ constexpr Case kCases[] = {
 
 constexpr StartState kStarts[] = {
     {"zero", Hazard::kObserve}, {"one", Hazard::kObserve}, {"beyond reach", Hazard::kObserve}};
-constexpr Chapter kChapters[] = {{"Numbers", kRequirements, kCases}};
-constexpr Suite kSuite{"n", "7", kChapters, kStarts};
+const Chapter kChapters[] = {{"Numbers",
+                              {std::begin(kRequirements), std::end(kRequirements)},
+                              {std::begin(kCases), std::end(kCases)}}};
+const Suite kSuite{"n", "7", kChapters, kStarts};
 
 Report run(NumberBench& bench, const std::string& filter, RunOptions options = {}) {
   options.selection.filter = filter;

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/chapters.hpp"
+
+#include "conformance/kinovazed/cases.hpp"
+
+namespace armjig::kinovazed::conformance {
+namespace {
+
+using enum emulation::State;
+
+template <emulation::State state>
+void value(ServerBench& server) {
+  enter(server, state);
+  server.expect_beat(beat_of(state));
+}
+
+/// The arm cannot be read and not be opened again, for a while.
+void lose_arm(ServerBench& server) {
+  server.spoil(ServerBench::Recovery::kByHand);
+  server.touch("arm.fail.arm_open", -1);
+  server.touch("arm.fail.status_read", 1);
+  server.pause(150ms);
+}
+
+void find_arm(ServerBench& server) { server.touch("arm.fail.arm_open", 0); }
+
+constexpr Clause kClauses[] = {
+    must("kinovazed.beat.period", "The next heartbeat comes 1 s after the one before.",
+         "server, recording heartbeat-period"),
+    /// The median forgives a machine that stands still for a moment.
+    in(kEmergencyStopped, "Most of five periods take 1 s.",
+       [](ServerBench& server) {
+         std::array<Duration, 5> periods{};
+         auto last = server.await_beat().time;
+         for (auto& each : periods) {
+           const auto beat = server.await_beat_behind(last).time;
+           each = beat - std::exchange(last, beat);
+         }
+         std::ranges::nth_element(periods, periods.begin() + 2);
+         server.about("the median of five periods");
+         expect_time(server, periods[2], 985ms - server.noise(), 1040ms + server.noise());
+       }),
+
+    must("kinovazed.beat.single", "There is one heartbeat in each second, and no other.",
+         "server, recording heartbeat-period"),
+    in(kEmergencyStopped, "Four beats within 4.5 s behind one.",
+       [](ServerBench& server) {
+         (void)server.await_beat();
+         const auto count = server.count_beats(4500ms);
+         server.expect_true(count == 4, "4 beats within 4.5 s", std::to_string(count));
+       }),
+
+    must("kinovazed.beat.values",
+         "Whatever happens, a heartbeat is one of 1, 3, 5, 13, 21, 37, 69 and 133.",
+         "document; server; reference 7"),
+    /// From one resting state to the next, by the way that the document tells.
+    in(kIdle, "Eight beats on the way through four states.",
+       [](ServerBench& server) {
+         constexpr std::array kHealthy{1, 3, 5, 13, 21, 37, 69, 133};
+         for (const auto* command : {"Retract", "EStop", "QuitEStop", "Initialize"}) {
+           server.say(command);
+           for (int i = 0; i < 2; ++i) {
+             const auto message = server.await_beat().message;
+             const auto* const beat = std::get_if<Heartbeat>(&message);
+             const bool is_healthy =
+                 beat != nullptr && std::ranges::find(kHealthy, beat->flags) != kHealthy.end();
+             server.expect_true(is_healthy, "1, 3, 5, 13, 21, 37, 69 or 133",
+                                beat == nullptr ? "none" : std::to_string(beat->flags));
+           }
+         }
+       }),
+
+    must("kinovazed.beat.decimal",
+         "The number of a heartbeat is decimal, without sign and padding.", "document; server"),
+    in(kEmergencyStopped, "Two beats are 3.",
+       [](ServerBench& server) {
+         server.expect_beat(3);
+         server.expect_beat(3);
+       }),
+
+    must("kinovazed.beat.during-commands", "Commands do not hold heartbeats up.",
+         "server; reference 2.1"),
+    in(kEmergencyStopped, "Three beats among 36 commands come in their time.",
+       [](ServerBench& server) {
+         const auto first = server.await_beat();
+         auto last = first;
+         for (int i = 0; i < 3; ++i) {
+           for (int command = 0; command < 12; ++command) {
+             server.accept("EStop");
+             server.pause(50ms);
+           }
+           last = server.await_beat();
+         }
+         expect_time(server, last.time - first.time, 2900ms, 3300ms + server.noise());
+       }),
+
+    must("kinovazed.beat.stopped", "In emergencyStopped the heartbeat is 3.",
+         "document; server, recording heartbeat-values-resting"),
+    in(kEmergencyStopped, "Beat 3.", on<value<kEmergencyStopped>>),
+
+    must("kinovazed.beat.off", "In poweredOff the heartbeat is 1.",
+         "document; server, recording heartbeat-values-resting"),
+    in(kPoweredOff, "Beat 1.", on<value<kPoweredOff>>),
+
+    must("kinovazed.beat.initializing",
+         "While the arm initializes behind an emergency stop the heartbeat is 1.",
+         "document; server, state-command-matrix"),
+    in(kInitializing, "Beat 1.", on<value<kInitializing>>),
+
+    must("kinovazed.beat.initializing-again",
+         "While the arm initializes again from idle the heartbeat is 5.", "server; reference 7",
+         Profiles::kFirmware),
+    in(kIdle, "Beat 5.", on<initialize_at_home>),
+
+    must("kinovazed.beat.idle", "In idle the heartbeat is 21.",
+         "document; server, recording heartbeat-values-resting"),
+    in(kIdle, "Beat 21.", on<value<kIdle>>),
+
+    must("kinovazed.beat.retracting", "In retracting the heartbeat is 5.",
+         "document; server, state-command-matrix"),
+    in(kRetracting, "Beat 5.", on<value<kRetracting>>),
+
+    must("kinovazed.beat.retracted", "In retracted the heartbeat is 133.",
+         "document; server, recording heartbeat-values-resting"),
+    in(kRetracted, "Beat 133.", on<value<kRetracted>>),
+
+    must("kinovazed.beat.unfolding", "In unfolding the heartbeat is 5.",
+         "document; server, state-command-matrix"),
+    in(kUnfolding, "Beat 5.", on<value<kUnfolding>>),
+
+    must("kinovazed.beat.setting-mode", "In settingMode the heartbeat is 5.",
+         "document; server, state-command-matrix"),
+    in(kSettingMode, "Beat 5.", on<value<kSettingMode>>),
+
+    must("kinovazed.beat.steering", "In steering the heartbeat is 69.",
+         "document; server, recording heartbeat-values-resting"),
+    in(kSteering, "Beat 69.", on<value<kSteering>>),
+
+    must("kinovazed.beat.running", "In runningSequence the heartbeat is 37.",
+         "document; server, state-command-matrix"),
+    in(kRunningSequence, "Beat 37.", on<value<kRunningSequence>>),
+
+    must("kinovazed.beat.frozen", "In frozen the heartbeat is 13.",
+         "document; server, recording heartbeat-values-resting"),
+    in(kFrozen, "Beat 13.", on<value<kFrozen>>),
+
+    must("kinovazed.beat.initialized",
+         "EStop clears the bit isInitialized, and only Initialized sets it again.",
+         "document; server, recording heartbeat-initialised-bit"),
+    in(kIdle, "Beats 21, 3, 1 and 21.",
+       [](ServerBench& server) {
+         server.expect_beat(21);
+         server.accept("EStop");
+         server.expect_beat(3);
+         server.accept("QuitEStop");
+         server.expect_beat(1);
+         server.perform("Initialize", Event::kInitialized);
+         server.expect_beat(21);
+       }),
+
+    must("kinovazed.beat.lost-arm",
+         "While the arm is lost no heartbeat comes, and never one without bit 0.",
+         "server, recording fault-outage-idle", Profiles::kFirmware,
+         "kinovazed.beat.shows-lost-arm"),
+    in(kIdle, "No beat for 2.5 s, then 3.",
+       [](ServerBench& server) {
+         lose_arm(server);
+         server.about("while the arm is lost");
+         server.expect_no_message(2500ms);
+         find_arm(server);
+         server.expect_beat(3);
+       }),
+
+    must("kinovazed.beat.shows-lost-arm", "While the arm is lost heartbeats go on, without bit 0.",
+         "document: isConnected; our reading", Profiles::kDocumented, "kinovazed.beat.lost-arm"),
+    in(kIdle, "Beat 20, later 3.",
+       [](ServerBench& server) {
+         lose_arm(server);
+         server.expect_beat(20);
+         find_arm(server);
+         server.pause(1s);
+         server.expect_beat(3);
+       }),
+};
+
+}  // namespace
+
+Chapter beat_chapter() { return chapter("Heartbeats", kClauses); }
+
+}  // namespace armjig::kinovazed::conformance

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/chapters.hpp"
+
+#include "conformance/kinovazed/cases.hpp"
+
+namespace armjig::kinovazed::conformance {
+namespace {
+
+using enum emulation::State;
+
+using Recovery = ServerBench::Recovery;
+
+void expect_lives(ServerBench& server) {
+  server.pause(500ms);
+  server.expect_true(server.answers(), "an answer to EStop", "silence");
+}
+
+// What kills a shipped server.
+
+void unplug(ServerBench& server) {
+  server.spoil(Recovery::kByHand);
+  server.about("while the arm is unplugged");
+  server.touch("arm.plugged", 0);
+  server.pause(200ms);
+}
+
+void break_velocity(ServerBench& server) {
+  server.spoil(Recovery::kByHand);
+  server.about("behind a velocity that cannot be read");
+  server.touch("arm.fail.velocity_read", 1);
+  server.pause(200ms);
+}
+
+void draw_current(ServerBench& server) {
+  server.spoil(Recovery::kByHand);
+  server.about("behind 4.6 A");
+  server.touch("arm.current", 4600);
+  server.pause(200ms);
+  server.touch("arm.current", 800);
+}
+
+void break_mode_write(ServerBench& server) {
+  server.spoil(Recovery::kByHand);
+  server.touch("arm.fail.cartesian_mode_select", 1);
+  server.accept("SetJoystickMode:XYZ");
+}
+
+/// Antenna and the end of Handle are further apart than the frame allows.
+void ask_position(ServerBench& server) {
+  server.spoil(Recovery::kBySupervisor);
+  server.perform("RunObjective:Handle", Event::kObjectiveDone);
+  server.say("SetActiveObjective:Antenna");
+  server.say("GetObjectivePosition");
+}
+
+void break_retract(ServerBench& server) {
+  server.spoil(Recovery::kBySupervisor);
+  server.touch("arm.fail.status_read", -1);
+  server.say("Retract");
+  server.pause(150ms);
+  server.touch("arm.fail.status_read", 0);
+}
+
+void break_mode_release(ServerBench& server) {
+  server.spoil(Recovery::kBySupervisor);
+  server.touch("arm.fail.joystick_release", -1);
+  server.say("SetJoystickMode:XYZ");
+  server.pause(150ms);
+  server.touch("arm.fail.joystick_release", 0);
+}
+
+void reset_waiting(ServerBench& server) {
+  server.spoil(Recovery::kBySupervisor);
+  server.as(1);
+  server.connect();
+  server.pause(100ms);
+  server.throw_away();
+  server.pause(100ms);
+  server.as(0);
+  server.leave();
+  server.as(2);
+  server.pause(300ms);
+}
+
+void reset_at_freeze(ServerBench& server) {
+  server.spoil(Recovery::kByHand);
+  server.send("Freeze\r\nUnfreeze\r\n");
+  server.throw_away();
+  server.as(1);
+  server.pause(300ms);
+  server.connect();
+}
+
+template <void (*kill)(ServerBench&)>
+void hangs(ServerBench& server) {
+  kill(server);
+  expect_hung(server);
+}
+
+template <void (*kill)(ServerBench&)>
+void ends(ServerBench& server) {
+  kill(server);
+  server.expect_end();
+}
+
+template <void (*kill)(ServerBench&)>
+void lives(ServerBench& server) {
+  kill(server);
+  expect_lives(server);
+}
+
+constexpr Case dies(std::string_view rule, CaseBody run) {
+  return full(from(kReady, Hazard::kCrash, rule, run));
+}
+
+constexpr Clause kClauses[] = {
+    must("kinovazed.death.hang",
+         "With its supervision dead the server keeps its connections, and sends nothing any "
+         "more.",
+         "server, recording fault-unplug-idle", Profiles::kFirmware, "kinovazed.death.repairs"),
+    dies("Neither this client nor the next hears anything.",
+         [](ServerBench& server) {
+           unplug(server);
+           expect_hung(server);
+           server.about("the next client of a hung server");
+           server.connect();
+           server.expect_no_message(1500ms);
+         }),
+
+    should("kinovazed.death.repairs",
+           "An arm that was unplugged and is back leaves the server in emergencyStopped, and it "
+           "answers.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.hang"),
+    dies("EStop is answered.",
+         [](ServerBench& server) {
+           unplug(server);
+           server.touch("arm.plugged", 1);
+           server.pause(300ms);
+           server.expect_true(server.answers(), "an answer to EStop", "silence");
+         }),
+
+    must("kinovazed.death.velocity", "A velocity that cannot be read hangs the server.",
+         "server; reference 11.2", Profiles::kFirmware, "kinovazed.death.no-velocity"),
+    dies("Nothing comes.", on<hangs<break_velocity>>),
+
+    should("kinovazed.death.no-velocity",
+           "A velocity that cannot be read leaves the server answering.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.velocity"),
+    dies("EStop is answered.", on<lives<break_velocity>>),
+
+    must("kinovazed.death.current", "More than 4.5 A of all joints together hang the server.",
+         "server; reference 11.2", Profiles::kFirmware, "kinovazed.death.no-current"),
+    dies("Nothing comes.", on<hangs<draw_current>>),
+
+    should("kinovazed.death.no-current",
+           "More than 4.5 A of all joints together leave the server answering.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.current"),
+    dies("EStop is answered.", on<lives<draw_current>>),
+
+    must("kinovazed.death.mode-write",
+         "A control type that cannot be written hangs the server, behind Accepted.",
+         "server; reference 11.2", Profiles::kFirmware, "kinovazed.death.no-mode-write"),
+    dies("Accepted, and then nothing.", on<hangs<break_mode_write>>),
+
+    should("kinovazed.death.no-mode-write",
+           "A control type that cannot be written leaves the server answering.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mode-write"),
+    dies("EStop is answered.", on<lives<break_mode_write>>),
+
+    unobservable(
+        "no way of published objectives leads there, and no client can place the arm",
+        must("kinovazed.death.later-point",
+             "A way-point outside 0.8 m in x, 0.85 m in y or 1.15 m in z hangs the server, if it "
+             "is not the first one.",
+             "server, transcript S9", Profiles::kFirmware)),
+
+    unobservable("the errors that do so have requirements of their own",
+                 must("kinovazed.death.process",
+                      "Some errors end the process: its clients see the end of their connections.",
+                      "server; reference 11.3", Profiles::kFirmware)),
+
+    unobservable("it needs a file of objectives that no client can give",
+                 must("kinovazed.death.first-point",
+                      "A first way-point outside the same limits ends the process.",
+                      "server; reference 11.3", Profiles::kFirmware)),
+
+    unobservable("it needs a file of objectives that no client can give",
+                 must("kinovazed.death.objective-missing",
+                      "An objective that the file does not have ends the process.",
+                      "server, transcript S12", Profiles::kFirmware)),
+
+    must("kinovazed.death.objective-position",
+         "GetObjectivePosition outside the same limits, in the frame of the objective, ends "
+         "the process.",
+         "server; reference 5.3", Profiles::kFirmware, "kinovazed.death.no-objective-position"),
+    dies("The connection ends.", on<ends<ask_position>>),
+
+    should("kinovazed.death.no-objective-position", "GetObjectivePosition never ends the process.",
+           "document is silent; our choice", Profiles::kDocumented,
+           "kinovazed.death.objective-position"),
+    dies("EStop is answered.", on<lives<ask_position>>),
+
+    must("kinovazed.death.retract-read", "A mode that cannot be read in Retract ends the process.",
+         "server; reference 11.3", Profiles::kFirmware, "kinovazed.death.no-retract-read"),
+    dies("The connection ends.", on<ends<break_retract>>),
+
+    should("kinovazed.death.no-retract-read",
+           "A mode that cannot be read in Retract leaves the server answering.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.retract-read"),
+    dies("EStop is answered.", on<lives<break_retract>>),
+
+    must("kinovazed.death.mode-release",
+         "A release that fails in SetJoystickMode ends the process.", "server; reference 11.3",
+         Profiles::kFirmware, "kinovazed.death.no-mode-release"),
+    dies("The connection ends.", on<ends<break_mode_release>>),
+
+    should("kinovazed.death.no-mode-release",
+           "A release that fails in SetJoystickMode leaves the server answering.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mode-release"),
+    dies("EStop is answered.", on<lives<break_mode_release>>),
+
+    must("kinovazed.death.accept-reset",
+         "A client that resets while it waits ends the process when its turn comes.",
+         "server; reference 1.7", Profiles::kFirmware, "kinovazed.death.no-accept-reset"),
+    dies("The next connection is refused.",
+         [](ServerBench& server) {
+           reset_waiting(server);
+           server.expect_true(!server.is_served(), "a process that has ended",
+                              "a client that is served");
+         }),
+
+    should("kinovazed.death.no-accept-reset", "A client that resets while it waits does no harm.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.accept-reset"),
+    dies("The next client is served.",
+         [](ServerBench& server) {
+           reset_waiting(server);
+           server.expect_true(server.is_served(), "a client that is served", "none");
+         }),
+
+    must("kinovazed.death.mute",
+         "A write that fails while another message waits behind it mutes the server for good: "
+         "Freeze and a reset do.",
+         "server, transcript S11", Profiles::kFirmware, "kinovazed.death.no-mute"),
+    dies("The next client hears nothing.", on<hangs<reset_at_freeze>>),
+
+    should("kinovazed.death.no-mute", "Freeze and a reset do no harm.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mute"),
+    dies("EStop of the next client is answered.", on<lives<reset_at_freeze>>),
+};
+
+}  // namespace
+
+Chapter death_chapter() { return chapter("Deaths", kClauses); }
+
+}  // namespace armjig::kinovazed::conformance

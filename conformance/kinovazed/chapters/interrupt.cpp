@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/chapters.hpp"
+
+#include "conformance/kinovazed/cases.hpp"
+
+namespace armjig::kinovazed::conformance {
+namespace {
+
+using enum emulation::State;
+
+/// Longer than what was interrupted would have taken with any arm.
+constexpr Duration kLater = 6s;
+
+template <emulation::State state>
+void estop(ServerBench& server) {
+  enter(server, state);
+  server.accept("EStop");
+  server.expect_quiet(kLater);
+  server.expect_beat(3);
+}
+
+/// The server has to see that the mode was another one before.
+void fold_while_initializing(ServerBench& server) {
+  enter(server, kInitializing);
+  server.pause(500ms);
+  server.touch("arm.mode", 3);
+}
+
+constexpr Clause kClauses[] = {
+    must("kinovazed.event.table",
+         "The arm's own ends act where they are awaited: folding ends in retracted, unfolding "
+         "and initializing in idle.",
+         "server; reference 6.4"),
+    in(kIdle, "Folding, unfolding, folding, initializing.",
+       [](ServerBench& server) {
+         server.perform("Retract", Event::kRetracted);
+         server.expect_beat(133);
+         server.perform("Unfold", Event::kUnfolded);
+         server.expect_beat(21);
+         server.perform("Retract", Event::kRetracted);
+         initialize_afresh(server);
+         server.expect_beat(21);
+       }),
+
+    must("kinovazed.interrupt.retract",
+         "Retract ends a change of mode, whose JoystickModeSet never comes.",
+         "server; reference 6.5"),
+    in(kIdle, "Retracted comes, and nothing else.",
+       [](ServerBench& server) {
+         server.accept("SetJoystickMode:XYZ");
+         server.accept("Retract");
+         server.about("Retract during a change of mode");
+         server.expect(Event::kRetracted, ServerBench::kMotionTime);
+         server.expect_quiet(1s);
+         server.expect_beat(133);
+       }),
+
+    must("kinovazed.interrupt.mode",
+         "SetJoystickMode ends a running objective, whose ObjectiveDone never comes.",
+         "document; server, recording interrupt-objective-by-mode"),
+    in(kIdle, "JoystickModeSet comes, and nothing for 6 s.",
+       [](ServerBench& server) {
+         server.accept(kFarObjective);
+         server.pause(300ms);
+         server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+         server.expect_quiet(kLater);
+         server.expect_beat(69);
+       }),
+
+    must("kinovazed.interrupt.objective",
+         "RunObjective replaces the objective that runs, and only the second one is done.",
+         "server, recording interrupt-objective-by-objective"),
+    in(kIdle, "ObjectiveDone comes, and nothing for 6 s.",
+       [](ServerBench& server) {
+         server.accept(kFarObjective);
+         server.pause(300ms);
+         server.perform("RunObjective:Home", Event::kObjectiveDone);
+         server.expect_quiet(kLater);
+       }),
+
+    must("kinovazed.interrupt.estop-initializing",
+         "EStop ends initializing, and Initialized never comes.",
+         "document; server, transcript T12"),
+    in(kInitializing, "Nothing for 6 s, and beat 3.", on<estop<kInitializing>>),
+
+    must("kinovazed.interrupt.estop-retracting",
+         "EStop ends retracting, and Retracted never comes.", "document; server, transcript T53"),
+    in(kRetracting, "Nothing for 6 s, and beat 3.", on<estop<kRetracting>>),
+
+    must("kinovazed.interrupt.estop-unfolding", "EStop ends unfolding, and Unfolded never comes.",
+         "document; server; reference 6.5"),
+    in(kUnfolding, "Nothing for 6 s, and beat 3.", on<estop<kUnfolding>>),
+
+    must("kinovazed.interrupt.estop-setting-mode",
+         "EStop ends a change of mode, and JoystickModeSet never comes.",
+         "document; server, recording interrupt-setting-mode-by-estop"),
+    in(kSettingMode, "Nothing for 6 s, and beat 3.", on<estop<kSettingMode>>),
+
+    must("kinovazed.interrupt.estop-objective",
+         "EStop ends an objective, and ObjectiveDone never comes.",
+         "document; server, recording interrupt-objective-by-estop"),
+    in(kRunningSequence, "Nothing for 6 s, and beat 3.", on<estop<kRunningSequence>>),
+
+    must("kinovazed.interrupt.late-mode",
+         "The end of a change of mode that EStop ended is not told after the next Initialize "
+         "either.",
+         "server; reference 8.3"),
+    in(kIdle, "Nothing for 1 s behind Initialized.",
+       [](ServerBench& server) {
+         server.accept("SetJoystickMode:XYZ");
+         initialize_afresh(server);
+         server.expect_quiet(1s);
+         server.expect_beat(21);
+       }),
+
+    must("kinovazed.interrupt.half-way",
+         "Behind EStop on the way to the folded pose Initialize leads to ready.",
+         "server, recording session-estop-mid-retract"),
+    in(kIdle, "Initialized comes, and beat 21.",
+       [](ServerBench& server) {
+         server.accept("Retract");
+         server.pause(800ms);
+         initialize_afresh(server);
+         server.expect_beat(21);
+       }),
+
+    must("kinovazed.retract.from-anywhere",
+         "Retract with the arm elsewhere goes by way of the ready pose, and Retracted comes "
+         "once.",
+         "server, transcript S16"),
+    in(kIdle, "From Home, Retracted comes once.",
+       [](ServerBench& server) {
+         server.perform("RunObjective:Home", Event::kObjectiveDone);
+         server.perform("Retract", Event::kRetracted);
+         server.expect_quiet(kLater);
+         server.expect_beat(133);
+       }),
+
+    must("kinovazed.retract.while-initializing",
+         "If the arm ends folded while it initializes, Retracted is sent and the server stays "
+         "initializing.",
+         "server, transcript S15", Profiles::kFirmware, "kinovazed.retract.goes-on"),
+    in(kInitializing, "Retracted, then beat 1.",
+       [](ServerBench& server) {
+         fold_while_initializing(server);
+         server.expect(Event::kRetracted);
+         server.refuse("Unfold");
+         server.expect_beat(1);
+       }),
+
+    must("kinovazed.retract.goes-on",
+         "An arm that ends folded while it initializes goes on to its ready pose.",
+         "document: Retracted is the answer to Retract; our choice", Profiles::kDocumented,
+         "kinovazed.retract.while-initializing"),
+    in(kInitializing, "Initialized comes all the same.",
+       [](ServerBench& server) {
+         fold_while_initializing(server);
+         server.expect(Event::kInitialized, ServerBench::kMotionTime);
+       }),
+
+    must("kinovazed.initialize.again",
+         "Initialize in idle moves an arm that is elsewhere to its ready pose, and the server "
+         "is initialized on the way.",
+         "server; reference 6.6", Profiles::kFirmware, "kinovazed.initialize.recurring"),
+    in(kIdle, "From Home, beat 5, then Initialized.",
+       [](ServerBench& server) {
+         initialize_at_home(server);
+         server.expect(Event::kInitialized, ServerBench::kMotionTime);
+         server.expect_beat(21);
+       }),
+
+    must("kinovazed.initialize.recurring",
+         "Initialize in idle is confirmed at once, wherever the arm is.",
+         "document, recurring commands; our reading", Profiles::kDocumented,
+         "kinovazed.initialize.again"),
+    in(kIdle, "From Home, Initialized within half a second.",
+       [](ServerBench& server) {
+         server.perform("RunObjective:Home", Event::kObjectiveDone);
+         server.perform("Initialize", Event::kInitialized, 500ms + server.noise());
+       }),
+};
+
+}  // namespace
+
+Chapter interrupt_chapter() { return chapter("Interrupts and ends", kClauses); }
+
+}  // namespace armjig::kinovazed::conformance

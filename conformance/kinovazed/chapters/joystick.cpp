@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/chapters.hpp"
+
+#include "conformance/kinovazed/cases.hpp"
+
+namespace armjig::kinovazed::conformance {
+namespace {
+
+using enum emulation::State;
+
+constexpr auto kStop = "MoveJoystick:0:0:0";
+
+constexpr auto kUp = "MoveJoystick:0:0:400";
+
+template <const char* mode>
+void set(ServerBench& server) {
+  server.perform(std::string{"SetJoystickMode:"} + mode, Event::kJoystickModeSet);
+  server.accept(kStop);
+  server.expect_beat(69);
+}
+
+constexpr char kXyz[] = "XYZ";
+
+constexpr char kRotation[] = "Rotation";
+
+constexpr char kAxis1to3[] = "Axis1to3";
+
+constexpr char kAxis4to6[] = "Axis4to6";
+
+/// From any state that takes modes.
+void no_mode(ServerBench& server) {
+  server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet, 400ms + server.noise());
+  server.expect_beat(21);
+}
+
+/// An arm that was up for two seconds is 0.4 m away from Home, which takes time; one that was not
+/// is there at once.
+constexpr Duration kWayBack = 500ms;
+
+void rise_from_home(ServerBench& server) {
+  server.perform("RunObjective:Home", Event::kObjectiveDone);
+  server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+  server.accept(kUp);
+}
+
+void expect_far_from_home(ServerBench& server) {
+  const auto said = server.now();
+  const auto done = server.perform("RunObjective:Home", Event::kObjectiveDone);
+  server.about("the way back to Home");
+  expect_time(server, done.time - said, kWayBack, ServerBench::kMotionTime);
+}
+
+/// Two modes with less than half a second between them, which is why the arm has to be ready.
+void two_modes(ServerBench& server) {
+  server.accept("SetJoystickMode:XYZ");
+  initialize_afresh(server);
+  server.say("SetJoystickMode:Rotation");
+}
+
+constexpr Clause kClauses[] = {
+    must("kinovazed.mode.settles", "JoystickModeSet comes half a second behind a mode that moves.",
+         "server, recording session-joystick-modes"),
+    /// The shortest of three, for all that a link does makes it longer.
+    in(kIdle, "0.5 to 0.7 s.",
+       [](ServerBench& server) {
+         auto shortest = ServerBench::kMotionTime;
+         for (const auto* mode : {"Rotation", "XYZ", "Axis1to3"}) {
+           const auto said = server.now();
+           const auto set =
+               server.perform(std::string{"SetJoystickMode:"} + mode, Event::kJoystickModeSet);
+           shortest = std::min(shortest, set.time - said);
+         }
+         expect_time(server, shortest, 500ms, 680ms + server.noise());
+       }),
+
+    must("kinovazed.mode.no-mode", "NoMode is confirmed at once and leads from steering to idle.",
+         "server, transcript T22"),
+    in(kSteering, "Within 0.4 s, and beat 21.", on<no_mode>),
+
+    must("kinovazed.mode.no-mode-idle", "NoMode in idle is confirmed at once, and idle stays.",
+         "server, transcript T21"),
+    in(kIdle, "Within 0.4 s, and beat 21.", on<no_mode>),
+
+    must("kinovazed.mode.xyz", "Mode XYZ can be set and steered in.",
+         "document; server, recording session-joystick-modes"),
+    in(kIdle, "A move is Accepted, and beat 69.", on<set<kXyz>>),
+
+    must("kinovazed.mode.rotation", "Mode Rotation can be set and steered in.",
+         "document; server, recording session-joystick-modes"),
+    in(kIdle, "A move is Accepted, and beat 69.", on<set<kRotation>>),
+
+    must("kinovazed.mode.axis1to3", "Mode Axis1to3 can be set and steered in.",
+         "document; server, recording session-joystick-modes"),
+    in(kIdle, "A move is Accepted, and beat 69.", on<set<kAxis1to3>>),
+
+    must("kinovazed.mode.axis4to6", "Mode Axis4to6 can be set and steered in.",
+         "document; server, recording session-joystick-modes"),
+    in(kIdle, "A move is Accepted, and beat 69.", on<set<kAxis4to6>>),
+
+    must("kinovazed.mode.chain", "From steering another mode can be set without leaving it first.",
+         "server, transcript T24"),
+    in(kSteering, "Four modes, and moves between them.",
+       [](ServerBench& server) {
+         for (const auto* mode : {"Rotation", "Axis1to3", "Axis4to6", "XYZ"}) {
+           server.perform(std::string{"SetJoystickMode:"} + mode, Event::kJoystickModeSet);
+           server.accept(kStop);
+         }
+       }),
+
+    must("kinovazed.joystick.gate", "Behind NoMode moves are Rejected.",
+         "server, recording joystick-mode-gate"),
+    in(kSteering, "Rejected.",
+       [](ServerBench& server) {
+         server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
+         server.refuse(kStop);
+       }),
+
+    must("kinovazed.joystick.behind-freeze",
+         "Behind Freeze and Unfreeze moves are Rejected until a mode is set again.",
+         "server; reference 6.6"),
+    in(kSteering, "Rejected, and Accepted behind a mode.",
+       [](ServerBench& server) {
+         server.perform("Freeze", Event::kFreezed);
+         server.perform("Unfreeze", Event::kUnfreezed);
+         server.refuse(kStop);
+         server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+         server.accept(kStop);
+       }),
+
+    must("kinovazed.joystick.behind-objective",
+         "Behind an objective moves are Rejected until a mode is set again.",
+         "server, transcript T42"),
+    in(kSteering, "Rejected.",
+       [](ServerBench& server) {
+         server.perform("RunObjective:Current", Event::kObjectiveDone);
+         server.refuse(kStop);
+       }),
+
+    must("kinovazed.joystick.any-number",
+         "Moves by any number of 32 bits are Accepted in steering.", "server, transcript T87"),
+    /// Each is undone in the same segment.
+    in(kSteering, "Four numbers are Accepted.",
+       [](ServerBench& server) {
+         for (const auto* number : {"2147483647", "-2147483648", "400", "-1"}) {
+           server.about(std::string{"a move by "} + number);
+           server.send(std::string{"MoveJoystick:0:0:"} + number + "\r\nMoveJoystick:0:0:0\r\n");
+           server.expect(Event::kAccepted);
+           server.expect(Event::kAccepted);
+         }
+       }),
+
+    must("kinovazed.joystick.stream", "A stream of moves is answered move by move.",
+         "server, transcript T27"),
+    in(kSteering, "Twenty moves in one go are Accepted.",
+       [](ServerBench& server) {
+         std::string moves;
+         for (int i = 0; i < 20; ++i) moves += "MoveJoystick:0:0:0\r\n";
+         server.send(moves);
+         for (int i = 0; i < 20; ++i) server.expect(Event::kAccepted);
+         server.expect_silence();
+       }),
+
+    must("kinovazed.joystick.holds", "A deflection moves the arm until the next one.",
+         "server; reference 8.2"),
+    in(kIdle, "Two seconds up, and Home is far away.",
+       [](ServerBench& server) {
+         rise_from_home(server);
+         server.pause(2s);
+         server.accept(kStop);
+         expect_far_from_home(server);
+       }),
+
+    must("kinovazed.joystick.client-lost",
+         "A deflection moves the arm on when its client has left.", "server, transcript S4"),
+    in(kIdle, "Two seconds up without a client, and Home is far away.",
+       [](ServerBench& server) {
+         rise_from_home(server);
+         server.pause(100ms);
+         server.leave();
+         server.pause(2s);
+         server.connect();
+         server.accept(kStop);
+         expect_far_from_home(server);
+       }),
+
+    unobservable(
+        "no message tells where the arm is or how fast",
+        must("kinovazed.joystick.scale",
+             "Numbers are taken times 0.0025, x and y negated, and not clamped; 400 is full "
+             "deflection.",
+             "server; reference 8.1")),
+
+    unobservable("no message tells where the arm is",
+                 must("kinovazed.joystick.bounds",
+                      "A deflection in x or y that leads beyond 0.79 or 0.84 m counts as 0, in "
+                      "every mode, by the "
+                      "last pose "
+                      "inside the workspace; the reply stays Accepted.",
+                      "server, transcript S17")),
+
+    unobservable("no message tells where the arm is",
+                 must("kinovazed.joystick.int-min", "The most negative number is not negated.",
+                      "server; reference 8.1", Profiles::kFirmware)),
+
+    must("kinovazed.mode.guard",
+         "A mode that is written within 500 ms of another one, by way of EStop, hangs the "
+         "server.",
+         "server, recording defect-mode-change-too-soon", Profiles::kFirmware,
+         "kinovazed.mode.no-guard"),
+    from(kReady, Hazard::kCrash, "Accepted, and then nothing, not even a beat.",
+         [](ServerBench& server) {
+           server.spoil(ServerBench::Recovery::kByHand);
+           two_modes(server);
+           server.expect(Event::kAccepted);
+           server.about("behind two modes within half a second");
+           expect_hung(server);
+         }),
+
+    should("kinovazed.mode.no-guard",
+           "A mode that is written within 500 ms of another one, by way of EStop, is set like "
+           "any other.",
+           "document is silent; our choice", Profiles::kDocumented, "kinovazed.mode.guard"),
+    from(kReady, Hazard::kCrash, "EStop is answered.",
+         [](ServerBench& server) {
+           server.spoil(ServerBench::Recovery::kByHand);
+           two_modes(server);
+           server.pause(1s);
+           server.expect_true(server.answers(), "an answer", "silence");
+         }),
+
+    must("kinovazed.mode.late-enough",
+         "The same way with more than 500 ms between the two modes is harmless.",
+         "server, recording defect-mode-change-late-enough"),
+    in(kIdle, "The second mode is set.",
+       [](ServerBench& server) {
+         server.accept("SetJoystickMode:XYZ");
+         switch_off(server);
+         server.pause(700ms);
+         server.perform("Initialize", Event::kInitialized);
+         server.perform("SetJoystickMode:Rotation", Event::kJoystickModeSet);
+         server.expect_beat(69);
+       }),
+};
+
+}  // namespace
+
+Chapter joystick_chapter() { return chapter("Joystick", kClauses); }
+
+}  // namespace armjig::kinovazed::conformance

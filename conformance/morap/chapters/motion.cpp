@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/morap/chapters.hpp"
+
+#include "conformance/morap/cases.hpp"
+
+namespace armjig::morap::conformance {
+namespace {
+
+/// How far the shaft turns in a time, rad.
+float turned(NodeBench& node, Duration time) {
+  const float before = node.number(kReadAngle);
+  node.pause(time);
+  return node.number(kReadAngle) - before;
+}
+
+template <int sign>
+void sense(NodeBench& node) {
+  node.send(kVoltage, static_cast<float>(sign) * 1.5F);
+  const float angle = turned(node, 300ms);
+  node.expect_true(static_cast<float>(sign) * angle > 0.01F, "the shaft to follow the voltage",
+                   fmt::format("a turn of {} rad", angle));
+  node.send(kDisable);
+}
+
+/// An angle, and between which instants it was read.
+struct Reading {
+  double angle;
+  Instant earliest;
+  Instant latest;
+};
+
+Reading read_angle(NodeBench& node) {
+  const auto earliest = node.now();
+  const double angle{node.number(kReadAngle)};
+  return {angle, earliest, node.now()};
+}
+
+double per_second(double angle, Duration time) {
+  return angle / std::chrono::duration<double>{time}.count();
+}
+
+/// The least and the largest current of a start, which is over in some milliseconds.
+std::pair<float, float> start_currents(NodeBench& node, float volts) {
+  constexpr int kMostReads = 60;
+  node.send(kVoltage, volts);
+  const auto deadline = node.now() + 30ms;
+  std::pair currents{0.0F, 0.0F};
+  for (int i = 0; i < kMostReads && (i == 0 || node.now() < deadline); ++i) {
+    const float amperes = node.number(kReadCurrent);
+    currents = {std::min(currents.first, amperes), std::max(currents.second, amperes)};
+    node.pause(500us);
+  }
+  return currents;
+}
+
+/// A shaft that was driven coasts: a tenth of a second behind it still turns.
+template <CommandId brake>
+void coasts(NodeBench& node) {
+  node.needs_emulation();  // a real gear may stop it as fast as a brake
+  node.send(kVoltage, 1.5F);
+  node.pause(300ms);
+  node.send(kDisable);
+  node.send(brake);
+  node.pause(100ms);
+  const float angle = turned(node, 50ms);
+  node.expect_true(angle > 0.002F, "a shaft that coasts", fmt::format("a turn of {} rad", angle));
+}
+
+constexpr Case moving(std::string_view rule, CaseBody run) {
+  return from(kFree, Hazard::kMove, rule, run);
+}
+
+constexpr Clause kClauses[] = {
+    must("morap.motion.sense", "A positive voltage makes the angle larger.",
+         "reference, encoder; recording loop-voltage"),
+    moving("1.5 V.", on<sense<1>>),
+
+    must("morap.motion.sense-negative", "A negative voltage makes the angle smaller.",
+         "reference, encoder; recording loop-voltage"),
+    moving("-1.5 V.", on<sense<-1>>),
+
+    must("morap.motion.position",
+         "With the stored controller a free shaft comes to its position reference.",
+         "document, position; recording loop-position-default"),
+    moving("0.5 rad in 1.5 s.",
+           [](NodeBench& node) {
+             node.send(kPosition, 0.5F);
+             node.pause(1500ms);
+             node.expect_near(kReadAngle, 0.5, 0.03);
+             node.send(kDisable);
+           }),
+
+    must("morap.motion.speed",
+         "With the stored controller a free shaft comes to its speed reference.",
+         "document, speed; recording loop-speed-default"),
+    /// Where reads take long, the speed is known the less.
+    moving("1 rad/s in half a second.",
+           [](NodeBench& node) {
+             node.send(kSpeed, 1.0F);
+             node.pause(500ms);
+             const auto before = read_angle(node);
+             node.pause(200ms);
+             const auto after = read_angle(node);
+             const double angle = after.angle - before.angle;
+             const double least = per_second(angle, after.latest - before.earliest);
+             const double most = per_second(angle, after.earliest - before.latest);
+             node.expect_true(least < 1.1 && most > 0.9, "a speed of 1 rad/s",
+                              fmt::format("{:.3f} to {:.3f}", least, most));
+             node.send(kDisable);
+           }),
+
+    must("morap.motion.holds", "At its position reference a shaft stays.",
+         "document, position; recording loop-position-default"),
+    moving("For 0.3 s.",
+           [](NodeBench& node) {
+             node.send(kPosition, 0.5F);
+             node.pause(1500ms);
+             const float angle = turned(node, 300ms);
+             node.expect_true(std::fabs(angle) < 0.01F, "no further turn",
+                              fmt::format("{} rad", angle));
+             node.send(kDisable);
+           }),
+
+    must("morap.motion.disabled", "A disabled shaft is driven no further.",
+         "document; recording loop-disable-coast"),
+    /// With little friction it coasts for long: it is at rest, or at least half as fast as it was.
+    moving("1.5 V, then 0.",
+           [](NodeBench& node) {
+             node.send(kVoltage, 1.5F);
+             node.pause(300ms);
+             node.send(kDisable);
+             const float before = std::fabs(turned(node, 300ms));
+             node.pause(3s);
+             const float angle = std::fabs(turned(node, 300ms));
+             node.expect_true(angle < 0.01F || angle < before / 2,
+                              "a shaft at rest, or about to be",
+                              fmt::format("{} rad in 0.3 s, and {} rad 3 s before", angle, before));
+           }),
+
+    must("morap.motion.latched", "A reference to an uncalibrated node does not move the shaft.",
+         "document, motor status; recording loop-uncalibrated"),
+    moving("1.5 V.",
+           [](NodeBench& node) {
+             node.send(kCalibrationUnknown);
+             node.send(kVoltage, 1.5F);
+             const float angle = turned(node, 300ms);
+             node.expect_true(std::fabs(angle) < 0.01F, "a shaft at rest",
+                              fmt::format("{} rad", angle));
+             node.send(kCalibrationUnknown);
+           }),
+
+    must("morap.motion.current", "While it starts a current is read, which is never negative.",
+         "document, current; recording loop-voltage"),
+    /// In real time a machine that has no time may look too late, and gets further starts.
+    moving("-1.5 V.",
+           [](NodeBench& node) {
+             const int tries = node.noise() > Duration{} ? 5 : 1;
+             float most = 0.0F;
+             for (int i = 0; i < tries && most <= 0.02F; ++i) {
+               const auto [least, largest] = start_currents(node, i % 2 == 0 ? -1.5F : 1.5F);
+               node.expect_true(least >= 0.0F, "no negative current", fmt::format("{} A", least));
+               most = largest;
+             }
+             node.expect_true(most > 0.02F, "a positive current", fmt::format("{} A", most));
+             node.send(kDisable);
+           }),
+
+    must("morap.brake.no-effect", "Identifier 15 does not brake a disabled shaft.",
+         "recording loop-disable-coast", Profiles::kFirmware),
+    moving("1.5 V, 0, 15.", on<coasts<kBrake15>>),
+
+    must("morap.brake.release", "Behind identifier 14 a disabled shaft turns freely.",
+         "document, brake; recording loop-disable-coast"),
+    moving("1.5 V, 0, 14.", on<coasts<kBrake14>>),
+};
+
+}  // namespace
+
+Chapter motion_chapter() { return chapter("A free shaft", kClauses); }
+
+}  // namespace armjig::morap::conformance

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/morap/chapters.hpp"
+
+#include "conformance/morap/cases.hpp"
+
+namespace armjig::morap::conformance {
+namespace {
+
+template <CommandId end>
+void voltage_ended(NodeBench& node) {
+  node.send(kVoltage, 1.5F);
+  node.settle();
+  node.expect_levels(32);
+  node.send(end);
+  node.settle();
+  node.expect_levels(0);
+}
+
+/// Calibrated and ticking, with everything that was pending done.
+void calibrate(NodeBench& node) {
+  node.send(kCalibrateZero);
+  node.tick();
+}
+
+/// In a mode of 200 Hz: the levels right before and right behind the next tick.
+void expect_step_at_tick(NodeBench& node, int before, int behind, std::uint16_t rate_hz = 0) {
+  node.send(kReadVoltage);
+  node.wait_for_tick();
+  node.about("right before the tick");
+  node.expect_read_levels(before);
+  node.tick(rate_hz);
+  node.about("right behind the tick");
+  node.expect_read_levels(behind);
+  node.about({});
+}
+
+constexpr int kMostLevels = 427;  // 20.015625 V
+
+/// At 1 V; to the first tick behind it.
+void turn_fast(NodeBench& node) {
+  calibrate(node);
+  node.send(kVoltage, 1.0F);
+  node.ticks(2);
+  node.turn(1000);
+  node.tick();
+}
+
+/// Behind a tick with a direct voltage.
+void expect_direct(NodeBench& node, float volts, int levels) {
+  node.about(fmt::format("asked for {} V", volts));
+  node.send(kDirectVoltage, volts);
+  node.tick();
+  node.expect_levels(levels);
+}
+
+/// The levels for a current in amperes at standstill.
+int levels_of_current(const Motor& motor, double amperes) {
+  const auto resistance = static_cast<double>(motor.eeprom(0).motor.resistance);
+  return static_cast<int>(std::lround(amperes * resistance * 1024 / 48));
+}
+
+double torque_constant(const Motor& motor) {
+  const auto constants = motor.eeprom(0).motor;
+  return static_cast<double>(constants.efficiency) *
+         static_cast<double>(constants.torque_constant) * static_cast<double>(constants.gear_ratio);
+}
+
+/// Runs a loop, whose third step is then the first with another reference.
+void expect_loop_rate(NodeBench& node, std::uint16_t rate_hz, int ticks) {
+  node.send(proportional(rate_hz, 1.0F));
+  node.send(kCalibrateZero);
+  node.tick();
+  node.send(kPosition, 0.75F);
+  node.tick(rate_hz);
+  expect_step_at_tick(node, 0, 16);
+  node.ticks(ticks);
+  node.send(kPosition, 1.5F);
+  node.tick();
+  expect_step_at_tick(node, 16, 32);
+}
+
+constexpr Case fresh(std::string_view rule, CaseBody run) {
+  return from(kFresh, Hazard::kMove, rule, run);
+}
+
+constexpr Case moving(std::string_view rule, CaseBody run) {
+  return from(kDisabled, Hazard::kMove, rule, run);
+}
+
+constexpr Clause kClauses[] = {
+    must("morap.voltage.close", "A drive voltage inside the limits is applied to within 0.05 V.",
+         "document, applied voltage; firmware: a step is 0.046875 V"),
+    moving("Up to 1.5 V.",
+           [](NodeBench& node) {
+             for (const float volts : {0.5F, 1.0F, 1.5F}) {
+               node.send(kVoltage, volts);
+               node.settle();
+               node.expect_near(kReadVoltage, static_cast<double>(volts), 0.05);
+             }
+             node.send(kDisable);
+           }),
+
+    must("morap.voltage.grid", "The applied voltage is the nearest multiple of 48/1024 V.",
+         "reference, voltage quantisation; vector 56"),
+    moving("Up to 1.5 V, around a border too.",
+           [](NodeBench& node) {
+             struct Row {
+               float volts;
+               int levels;
+             };
+             for (const auto& [volts, levels] :
+                  {Row{0.0234F, 0}, {0.0235F, 1}, {0.5F, 11}, {1.0F, 21}, {1.5F, 32}}) {
+               node.about(fmt::format("asked for {} V", volts));
+               node.send(kVoltage, volts);
+               node.settle();
+               node.expect_levels(levels);
+             }
+             node.send(kDisable);
+           }),
+
+    must("morap.voltage.sign", "A negative drive voltage is applied as negative.",
+         "document; recording static-direct-voltage"),
+    moving("-1.5 V.",
+           [](NodeBench& node) {
+             node.send(kVoltage, -1.5F);
+             node.settle();
+             node.expect_levels(-32);
+             node.send(kDisable);
+           }),
+
+    must("morap.voltage.uncalibrated", "Without calibration no voltage is applied.",
+         "document, motor status; vector 14"),
+    from(kUncalibrated, Hazard::kMove, "1.5 V.",
+         [](NodeBench& node) {
+           node.send(kVoltage, 1.5F);
+           node.settle();
+           node.expect_levels(0);
+           node.send(kCalibrationUnknown);
+         }),
+
+    must("morap.voltage.disabled", "Once disabled no voltage is applied.",
+         "document; recording loop-disable-coast"),
+    moving("1.5 V, then 0.", on<voltage_ended<kDisable>>),
+
+    must("morap.voltage.forgotten", "Once the calibration is forgotten no voltage is applied.",
+         "firmware, tick"),
+    moving("1.5 V, then 31.", on<voltage_ended<kCalibrationUnknown>>),
+
+    must("morap.voltage.at-tick", "A drive voltage is applied at the next tick and not before.",
+         "vector 55"),
+    fresh("1.5 V between ticks.",
+          [](NodeBench& node) {
+            calibrate(node);
+            node.send(kVoltage, 1.5F);
+            expect_step_at_tick(node, 0, 32);
+          }),
+
+    must("morap.voltage.disabled-at-tick",
+         "Disabling takes the voltage away at the next tick and not before.",
+         "recording static-slow-controller"),
+    fresh("0 between ticks.",
+          [](NodeBench& node) {
+            calibrate(node);
+            node.send(kVoltage, 1.5F);
+            node.tick();
+            node.send(kDisable);
+            expect_step_at_tick(node, 32, 0);
+          }),
+
+    must("morap.voltage.current-limit",
+         "At standstill the drive voltage is limited to what drives the rated current.",
+         "vector 55; recording static-voltage-limited"),
+    fresh("10 V.",
+          [](NodeBench& node) {
+            calibrate(node);
+            node.send(kVoltage, 10.0F);
+            node.tick();
+            node.expect_levels(node.motor().standstill_levels);
+          }),
+
+    must("morap.voltage.current-limit-negative", "So is a negative drive voltage.",
+         "recording static-voltage-limited"),
+    fresh("-10 V.",
+          [](NodeBench& node) {
+            calibrate(node);
+            node.send(kVoltage, -10.0F);
+            node.tick();
+            node.expect_levels(-node.motor().standstill_levels);
+          }),
+
+    must("morap.voltage.overspeed",
+         "A shaft that turns too fast for the drive voltage gets a higher one, up to the limit.",
+         "vector 59"),
+    fresh("1000 counts in a tick.",
+          [](NodeBench& node) {
+            turn_fast(node);
+            node.expect_levels(kMostLevels);
+          }),
+
+    must("morap.voltage.speed-unfiltered",
+         "The limit of the drive voltage follows the speed over one tick, unfiltered.",
+         "firmware, voltage mode; recording stim-voltage"),
+    fresh("1000 counts in a tick, and the next tick.",
+          [](NodeBench& node) {
+            turn_fast(node);
+            node.about("one tick behind the turn");
+            node.tick();
+            node.expect_levels(21);
+          }),
+
+    must("morap.direct.no-current-limit",
+         "The direct drive voltage is not limited to the rated current.", "vector 57",
+         Profiles::kFirmware),
+    fresh("10 V at standstill.",
+          [](NodeBench& node) {
+            calibrate(node);
+            expect_direct(node, 10.0F, 213);
+          }),
+
+    must("morap.direct.limit", "No voltage beyond 20 V is applied, which reads as 20.015625 V.",
+         "vector 58", Profiles::kFirmware),
+    fresh("More than 20 V of both signs.",
+          [](NodeBench& node) {
+            calibrate(node);
+            expect_direct(node, 20.0F, kMostLevels);
+            expect_direct(node, 24.0F, kMostLevels);
+            expect_direct(node, -30.0F, -kMostLevels);
+          }),
+
+    must("morap.direct.rounding", "Voltages are rounded to the nearest level of both signs alike.",
+         "reference, voltage quantisation", Profiles::kFirmware),
+    fresh("Around borders of both signs.",
+          [](NodeBench& node) {
+            calibrate(node);
+            expect_direct(node, 0.0234F, 0);
+            expect_direct(node, 0.0235F, 1);
+            expect_direct(node, -0.0234F, 0);
+            expect_direct(node, -0.0235F, -1);
+            expect_direct(node, 5.0F, 107);
+            expect_direct(node, 12.0F, 256);
+            expect_direct(node, -15.0F, -320);
+          }),
+
+    must("morap.direct.infinite", "An infinite direct voltage is one of 20 V.",
+         "reference, voltage quantisation", Profiles::kFirmware),
+    fresh("Infinitely many volts.",
+          [](NodeBench& node) {
+            calibrate(node);
+            expect_direct(node, std::numeric_limits<float>::infinity(), kMostLevels);
+          }),
+
+    must("morap.torque.standstill",
+         "At standstill a torque is driven by the voltage of its current.", "vectors 60 and 62",
+         Profiles::kFirmware),
+    fresh("2 and -3 N m.",
+          [](NodeBench& node) {
+            calibrate(node);
+            for (const float torque : {2.0F, -3.0F}) {
+              node.about(fmt::format("{} N m", torque));
+              node.send(kTorque, torque);
+              node.tick();
+              const auto amperes = static_cast<double>(torque) / torque_constant(node.motor());
+              node.expect_levels(levels_of_current(node.motor(), amperes));
+            }
+          }),
+
+    must("morap.torque.limit", "A torque is limited to that of the rated current.",
+         "vector 61; recording static-torque-limited", Profiles::kFirmware),
+    fresh("10 N m both ways.",
+          [](NodeBench& node) {
+            calibrate(node);
+            for (const int sign : {1, -1}) {
+              node.send(kTorque, static_cast<float>(10 * sign));
+              node.tick();
+              node.expect_levels(sign * node.motor().standstill_levels);
+            }
+          }),
+
+    must("morap.torque.motion",
+         "To the voltage of a torque that of the motion is added, for one tick without a filter.",
+         "firmware, torque mode; recording stim-torque", Profiles::kFirmware),
+    fresh("100 counts in a tick, without a torque.",
+          [](NodeBench& node) {
+            calibrate(node);
+            node.send(kTorque, 0.0F);
+            node.ticks(2);
+            node.turn(100);
+            node.tick();
+            // K n times 100 counts in 5 ms.
+            const auto constants = node.motor().eeprom(0).motor;
+            const double counts_per_turn = 4.0 * static_cast<double>(constants.pulses_per_turn);
+            const double volts = static_cast<double>(constants.torque_constant) * 100 * 2 *
+                                 3.14159265358979 / counts_per_turn / 0.005;
+            node.expect_levels(static_cast<int>(std::lround(volts * 1024 / 48)));
+            node.tick();
+            node.expect_levels(0);
+          }),
+
+    must("morap.current.scale", "The current is the converted code in steps of 2.60678 mA.",
+         "vectors 66 and 67; recording stim-adc-current"),
+    fresh("Codes over the whole range.",
+          [](NodeBench& node) {
+            struct Row {
+              int code;
+              const char* bytes;
+            };
+            for (const auto& [code, bytes] : {Row{1, "8F D6 2A 3B"},
+                                              {100, "A0 77 85 3E"},
+                                              {575, "F5 DB BF 3F"},
+                                              {1000, "87 D5 26 40"},
+                                              {2048, "8F D6 AA 40"},
+                                              {4095, "E1 CB 2A 41"}}) {
+              node.about(fmt::format("code {}", code));
+              node.touch("adc", code);
+              node.expect_bytes(kReadCurrent, bytes);
+            }
+          }),
+
+    must("morap.current.zero", "Without a current 0 is read.", "firmware, current"),
+    fresh("At power-on.", [](NodeBench& node) { node.expect_number(kReadCurrent, 0.0F); }),
+
+    must("morap.tick.idle-rate", "Without a feedback loop a tick comes every 5.0005 ms.",
+         "recording static-tick-timing"),
+    fresh("The 42nd tick comes when it should.",
+          [](NodeBench& node) {
+            calibrate(node);
+            node.ticks(40);
+            node.send(kVoltage, 1.5F);
+            expect_step_at_tick(node, 0, 32);
+          }),
+
+    must("morap.tick.loop-rate", "With a feedback loop ticks come at the rate of its controller.",
+         "recording static-rate-change-timing"),
+    fresh("A loop of 320 Hz, 60 ticks.", [](NodeBench& node) { expect_loop_rate(node, 320, 60); }),
+
+    must("morap.tick.slow-rate",
+         "Rates for which the timer has to be divided are kept as well, down to a few hertz.",
+         "reference, timer; recording static-slow-controller"),
+    fresh("A loop of 50 Hz, 10 ticks.", [](NodeBench& node) { expect_loop_rate(node, 50, 10); }),
+
+    must("morap.tick.uncalibrated-rate",
+         "The rate follows the mode also while the node is uncalibrated.", "firmware, tick"),
+    fresh("A latched loop of 50 Hz.",
+          [](NodeBench& node) {
+            node.send(proportional(50, 1.0F));
+            node.tick();
+            node.send(kPosition, 0.75F);
+            node.tick(50);
+            node.tick();
+            node.send(kCalibrateZero);
+            node.send(kVoltage, 1.5F);
+            expect_step_at_tick(node, 0, 32);
+          }),
+
+    must("morap.tick.back-to-idle", "Behind a feedback loop the idle rate comes back.",
+         "recording static-mode-switch-locked"),
+    fresh("A loop of 320 Hz, then a voltage.",
+          [](NodeBench& node) {
+            node.send(proportional(320, 1.0F));
+            calibrate(node);
+            node.send(kPosition, 0.75F);
+            node.tick(320);
+            node.ticks(2);
+            node.send(kVoltage, 0.0F);
+            node.tick(200);
+            node.ticks(20);
+            node.send(kVoltage, 1.5F);
+            expect_step_at_tick(node, 0, 32);
+          }),
+};
+
+}  // namespace
+
+Chapter output_chapter() { return chapter("Output and ticks", kClauses); }
+
+}  // namespace armjig::morap::conformance

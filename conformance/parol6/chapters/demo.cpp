@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/parol6/chapters.hpp"
+
+#include "conformance/parol6/cases.hpp"
+
+namespace armjig::parol6::conformance {
+namespace {
+
+constexpr Speeds kOut{6179, -22'222, 49'812, 0, 4059, 46'075};
+
+/// Counters at power-up are 0, so every leg has its way to go. The longest takes
+/// 15.2 s, and more on a board with a long loop.
+constexpr Duration kLeg = 40s;
+
+/// Asks until an answer takes more than a second, for the board sleeps between its legs. That is
+/// how long it took; the answer is the first one behind it.
+struct Sleep {
+  Answer after;
+  Duration length{};
+};
+
+Sleep run_out(BoardBench& board) {
+  const auto end = board.now() + kLeg;
+  while (!board.is_over() && !board.error() && board.now() < end) {
+    const auto answer = board.ask(with_code(kDemo), 3s);
+    const auto length = answer.received - answer.asked;
+    if (length > 1s) return {board.ask(with_code(kDemo)), length};
+    board.pause(BoardBench::kFramePeriod);
+  }
+  board.fail("a sleep at the end of the first leg", "none within 40 s");
+  return {};
+}
+
+Answer run_back(BoardBench& board) {
+  const auto is_back = [](const Answer& answer) { return answer.position == kStandby; };
+  const auto answer = board.ask_until(with_code(kDemo), is_back, kLeg);
+  if (!answer) board.fail("all joints at their standby positions", "not within 40 s");
+  return answer.value_or(Answer{});
+}
+
+constexpr Clause kClauses[] = {
+    must("parol6.demo",
+         "Code 69 drives all joints out to 6179, -22222, 49812, 0, 4059, 46075 and back to their "
+         "standby positions.",
+         "firmware", Profiles::kFirmware, "parol6.demo.unknown"),
+    from(kFresh, Hazard::kMove, "All joints go out and come back.",
+         [](BoardBench& board) {
+           board.spoil();
+           const auto out = run_out(board).after;
+           board.about("the first answers after the sleep");
+           for (std::size_t j = 0; j < kJointCount; ++j) {
+             board.expect_between(out, position_field(j), kOut[j] - 40, kOut[j] + 40);
+           }
+           run_back(board);
+         }),
+
+    must("parol6.demo.unknown", "Code 69 has no meaning and moves nothing.",
+         "document: not among its codes", Profiles::kDocumented, "parol6.demo"),
+    from(kFresh, Hazard::kMove, "No joint moves with code 69.",
+         [](BoardBench& board) {
+           board.spoil();
+           board.about("code 69");
+           expect_still(board, with_code(kDemo), 500ms);
+         }),
+
+    must("parol6.demo.disabled", "The demonstration also runs while disabled.",
+         "firmware: not guarded by the flag", Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "Joints move with code 69 after disable.",
+         [](BoardBench& board) {
+           board.spoil();
+           board.act(with_code(kDisable));
+           board.about("code 69 while disabled");
+           expect_moved(board, run(board, with_code(kDemo), 500ms));
+         }),
+
+    must("parol6.demo.sleeps",
+         "Between its two legs the board sleeps for 2 s, and answers afterwards what came "
+         "meanwhile.",
+         "firmware", Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "One answer between the legs takes 2 s.",
+         [](BoardBench& board) {
+           board.spoil();
+           const auto length = run_out(board).length;
+           board.expect_true(length > 1900ms && length < 2100ms, "one answer after 2 s",
+                             fmt::format("it took {} ms", length / 1ms));
+         }),
+
+    must("parol6.demo.ramp",
+         "The demonstration drives J1 with at most 6000 steps/s and 6000 steps/s^2.",
+         "firmware, vector S8", Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "J1 has the speeds of its ramp at 1000 and at 3050 steps.",
+         [](BoardBench& board) {
+           board.spoil();
+           const auto has_sped_up = [](const Answer& answer) {
+             return answer.position[0].value > 1000;
+           };
+           const auto answer = board.ask_until(with_code(kDemo), has_sped_up, 5s);
+           board.about("j1 some 1000 steps into the demonstration");
+           if (!answer) return board.fail("j1 to go up", "it does not");
+           board.expect_between(*answer, "speed.j1", 3400, 3800);
+           const auto is_fast = [](const Answer& later) { return later.position[0].value > 3050; };
+           const auto fast = board.ask_until(with_code(kDemo), is_fast, 5s);
+           board.about("j1 half-way in the demonstration");
+           if (fast) board.expect_between(*fast, "speed.j1", 5850, 6000);
+         }),
+
+    must("parol6.demo.once",
+         "A demonstration that has ended does not begin again until an idle frame has reset it.",
+         "firmware", Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "The demonstration runs again only after an idle frame.",
+         [](BoardBench& board) {
+           board.spoil();
+           run_out(board);
+           run_back(board);
+           board.about("code 69 after the end of a demonstration");
+           expect_still(board, with_code(kDemo), 500ms);
+           board.act(idle());
+           board.about("code 69 after the end of a demonstration and idle");
+           expect_moved(board, run(board, with_code(kDemo), 500ms));
+         }),
+
+    must("parol6.demo.interrupted",
+         "Another code than idle pauses the demonstration, and 69 goes on with it.", "firmware",
+         Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "The demonstration stands while code 42 is sent, and goes on.",
+         [](BoardBench& board) {
+           board.spoil();
+           board.keep_asking(with_code(kDemo), 1s);
+           board.act(with_code(42));
+           board.about("code 42 in a demonstration");
+           expect_still(board, with_code(42), 200ms);
+           const auto before = board.ask(with_code(kDemo));
+           const auto after = board.keep_asking(with_code(kDemo), 200ms);
+           board.about("code 69 again");
+           board.expect_between(after, "position.j3", before.position[2].value + 100, INT32_MAX);
+         }),
+
+    must("parol6.demo.lowers-maximum",
+         "The maximum speeds of the demonstration, 6000, 4000, 3500, 3500, 3500, 7500, stay in "
+         "force "
+         "until power-off.",
+         "firmware", Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "Six jogs are clamped to six lower speeds.",
+         [](BoardBench& board) {
+           board.spoil();
+           board.keep_asking(with_code(kDemo), 100ms);
+           board.act(idle());
+           constexpr int kFast = 60'000;
+           board.act(jog({kFast, -kFast, kFast, -kFast, kFast, -kFast}));
+           board.about("a jog at 60,000 after a demonstration");
+           expect_reported(board, board.ask(jog({kFast, -kFast, kFast, -kFast, kFast, -kFast})),
+                           {6000, -4000, 3500, -3500, 3500, -7500});
+         }),
+
+    must("parol6.demo.pauses-homing", "Code 69 pauses homing and runs the demonstration.",
+         "firmware", Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "J1 goes up with code 69 while it homes downward.",
+         [](BoardBench& board) {
+           board.spoil();
+           board.act(with_code(kHome));
+           board.keep_asking(idle(), 100ms);
+           const auto stretch = run(board, with_code(kDemo), 500ms);
+           board.about("j1, which homes downward, in 500 ms of code 69");
+           board.expect_true(steps(stretch, 0) > 100, "more than 100 steps up",
+                             fmt::format("{} steps", steps(stretch, 0)));
+           board.about("a jog after it");
+           expect_moved(board, run(board, jog(4, 1000), 50ms));
+         }),
+
+    must("parol6.demo.disabled-interrupted",
+         "A demonstration of a disabled board stands still while another code comes.", "firmware",
+         Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "Six codes in turn stop the demonstration of a disabled board.",
+         [](BoardBench& board) {
+           board.spoil();
+           board.act(with_code(kDisable));
+           for (const int code : {42, 100, 102, 103, 123, 156}) {
+             board.keep_asking(with_code(kDemo), 300ms);
+             board.act(with_code(code));
+             board.about(fmt::format("code {} in a demonstration while disabled", code));
+             expect_still(board, with_code(code), 100ms);
+           }
+         }),
+};
+
+}  // namespace
+
+Chapter demo_chapter() { return chapter("Demonstration", kClauses); }
+
+}  // namespace armjig::parol6::conformance
