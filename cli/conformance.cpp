@@ -210,7 +210,7 @@ Exit run(const Device& device, const Suite& suite, Options options) {
   fmt::print("{}\n", counts_line(result, style));
   print_skipped(result);
   fmt::print("{}", failures_text(result, style));
-  files->write(result);
+  files->put(result);
   return signals.has_come() ? signals.exit() : static_cast<Exit>(conclusion_of(result));
 }
 

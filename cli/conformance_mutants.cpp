@@ -78,7 +78,7 @@ Exit run(const Device& device, const MutantsEntry& entry, Options options) {
   }
   for (const auto& section : summary.sections) fmt::print("\n{}", to_text(section, style));
   fmt::print("\n{}\n", counts_line(summary, style));
-  files->write(summary);
+  files->put(summary);
   return signals.has_come() ? signals.exit() : static_cast<Exit>(conclusion_of(summary));
 }
 

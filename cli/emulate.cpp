@@ -125,7 +125,7 @@ Exit conclude(ProgramCheck& check, const Options& options, const ReportOutputs& 
   const auto result = check.finish();
   fmt::print("{}\n", options.wants_json ? to_json(result)
                                         : to_text(result, style_of(options.colour, stdout)));
-  files.write(result);
+  files.put(result);
   return static_cast<Exit>(conclusion_of(result));
 }
 

@@ -57,7 +57,7 @@ struct Options {
 Exit conclude(const Report& result, const Options& options, const ReportOutputs& files,
               Exit of_program) {
   fmt::print(stderr, "{}\n", to_text(result, style_of(options.colour, stderr)));
-  files.write(result);
+  files.put(result);
   return of_program == Exit::kPassed ? static_cast<Exit>(conclusion_of(result)) : of_program;
 }
 

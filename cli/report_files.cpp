@@ -33,8 +33,8 @@ Outcome<ReportOutputs> ReportOutputs::open(const ReportFiles& files) {
   return outputs;
 }
 
-void ReportOutputs::write(const Report& report) const {
-  for (const auto& [form, file] : files_) file->write(form->write(report));
+void ReportOutputs::put(const Report& report) const {
+  for (const auto& [form, file] : files_) file->put(form->text_of(report));
 }
 
 }  // namespace armjig::cli

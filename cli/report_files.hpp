@@ -22,7 +22,7 @@ class ReportOutputs {
   [[nodiscard]] static Outcome<ReportOutputs> open(const ReportFiles& files);
 
   /// What cannot be written is said at the end of the program.
-  void write(const Report& report) const;
+  void put(const Report& report) const;
   [[nodiscard]] bool is_empty() const noexcept { return files_.empty(); }
 
  private:

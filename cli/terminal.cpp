@@ -97,8 +97,10 @@ void add_colour_option(CLI::App& command, std::string& when) {
 }
 
 Style style_of(std::string_view when, std::FILE* stream) {
-  const bool is_liked = environment("NO_COLOR").empty() && environment("TERM") != "dumb" &&
-                        ::isatty(::fileno(stream)) == 1;
+  // The streams stand in front of the descriptors and have none of their own (cli/outputs.hpp).
+  const auto descriptor = stream == stderr ? STDERR_FILENO : STDOUT_FILENO;
+  const bool is_liked =
+      environment("NO_COLOR").empty() && environment("TERM") != "dumb" && ::isatty(descriptor) == 1;
   return when == "always" || (when == "auto" && is_liked) ? Style::kColour : Style::kPlain;
 }
 

@@ -189,9 +189,9 @@ Exit simulate(const Options& options) {
   for (const auto& [name, value] : made.facts) fmt::print("{:<17} {}\n", name, value);
   fmt::print("{}", to_text(made.sections.front()));
   const auto& [csv, svg, html] = *files;
-  if (csv) csv->write(csv_of(response));
-  if (svg) svg->write(to_svg(made.sections.back().plots.front()));
-  if (html) html->write(to_html(made));
+  if (csv) csv->put(csv_of(response));
+  if (svg) svg->put(to_svg(made.sections.back().plots.front()));
+  if (html) html->put(to_html(made));
   return Exit::kPassed;
 }
 

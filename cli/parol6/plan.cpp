@@ -57,10 +57,10 @@ Exit plan(const Options& options) {
   }
   const auto& file = options.script.file;
   const auto& [csv, json, html, trace] = *files;
-  if (csv) csv->write(to_csv(*program, *schedule));
-  if (json) json->write(to_json(*program, *schedule, file));
-  if (html) html->write(to_html(to_report(*program, *schedule, file)));
-  if (trace) trace->write(to_trace(*schedule, file));
+  if (csv) csv->put(to_csv(*program, *schedule));
+  if (json) json->put(to_json(*program, *schedule, file));
+  if (html) html->put(to_html(to_report(*program, *schedule, file)));
+  if (trace) trace->put(to_trace(*schedule, file));
   const bool has_table = std::ranges::none_of(
       *files, [](const Output& one) { return one && one->is_standard_output(); });
   if (has_table) {

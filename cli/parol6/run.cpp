@@ -223,8 +223,8 @@ Exit run_on(Session& session, const script::Program& program, Planning planning,
   }
   if (!options.plots.empty()) {
     const auto plots = script::run_plots(run);
-    files.front()->write(to_svg(plots.position));
-    files.back()->write(to_svg(plots.error));
+    files.front()->put(to_svg(plots.position));
+    files.back()->put(to_svg(plots.error));
   }
   return halt ? say(*halt) : Exit::kPassed;
 }

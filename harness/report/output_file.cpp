@@ -147,7 +147,7 @@ bool OutputFile::is_same_place(const OutputFile& other) const noexcept {
          there_.st_ino == other.there_.st_ino && name_ == other.name_;
 }
 
-Outcome<void> OutputFile::write(std::string_view content) {
+Outcome<void> OutputFile::put(std::string_view content) {
   if (!failure_) {
     const bool is_in_place = kind_ == Kind::kGrowing || !is_regular_;
     const int error = is_in_place ? append(content) : write_whole(content);

@@ -38,9 +38,9 @@ class OutputFile {
   /// The whole content, or the next piece. After a problem a file of `kWhole` is what it was, one
   /// of `kGrowing` ends with its last complete piece, and nothing more is written. Problems:
   /// `kDisconnected` if the reader has gone, or else `kCannotWrite`.
-  Outcome<void> write(std::string_view content);
+  Outcome<void> put(std::string_view content);
 
-  /// The first problem of `write`; none so far.
+  /// The first problem of `put`; none so far.
   [[nodiscard]] const std::optional<Problem>& failure() const noexcept { return failure_; }
   [[nodiscard]] bool is_standard_output() const noexcept;
   /// Whether one of them would overwrite what the other one writes, or come in between, whatever

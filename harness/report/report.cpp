@@ -63,7 +63,7 @@ Outcome<void> write_files(const Report& report, const ReportFiles& files) {
     if (file == files.end() || file->second.empty()) continue;
     auto written =
         OutputFile::open(file->second).and_then([&](const std::shared_ptr<OutputFile>& opened) {
-          return opened->write(form.write(report));
+          return opened->put(form.text_of(report));
         });
     if (!written) return written;
   }

@@ -138,7 +138,7 @@ enum class Style : std::uint8_t { kPlain, kColour };
 struct ReportForm {
   std::string_view name;  ///< of the option that asks for it
   std::string_view what;  ///< for people
-  std::string (*write)(const Report& report);
+  std::string (*text_of)(const Report& report);
 };
 
 /// All of them; nothing else lists them.

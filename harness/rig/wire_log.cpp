@@ -14,7 +14,7 @@ namespace armjig {
 Outcome<std::shared_ptr<WireLog>> WireLog::create(std::shared_ptr<OutputFile> file,
                                                   std::string_view device,
                                                   MakeDissector make_dissector) {
-  const auto begun = file->write(fmt::format(
+  const auto begun = file->put(fmt::format(
       "{{\"format\":\"golden-trace/1\",\"device\":\"{}\",\"title\":\"wire log\"}}\n", device));
   if (!begun) return tl::unexpected{begun.error()};
   return std::shared_ptr<WireLog>{new WireLog{std::move(file), make_dissector}};
@@ -33,7 +33,7 @@ void WireLog::add(Instant time, std::string_view keys, std::span<const Message> 
     separator = ",";
   }
   line += messages.empty() ? "}\n" : "]}\n";
-  (void)file_->write(line);  // whoever opened it asks for its failure
+  (void)file_->put(line);  // whoever opened it asks for its failure
 }
 
 void WireLog::add_input(Instant time, std::string_view kind, std::string_view name,

@@ -37,7 +37,7 @@ TEST(Error, TellsAUserWhatWhereAndWhatToDoInOneLine) {
             "/dev/ttyACM0: in use by another program; close the other program");
   EXPECT_EQ(describe(Problem{ErrorCode::kTimedOut, "", ""}), "no answer in time");
   EXPECT_EQ(describe(Problem{ErrorCode::kBadValue, "--x is missing", "write --x 1"}),
-            "--x is missing; write --x 1");
+            "--x is missing: write --x 1");
 }
 
 }  // namespace

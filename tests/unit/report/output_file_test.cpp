@@ -61,7 +61,7 @@ TEST_F(OutputFileTest, ChangesNothingBeforeItIsWritten) {
 TEST_F(OutputFileTest, ReplacesTheOldFileAndKeepsItsMode) {
   const auto old = with("old", "a longer old one");
   ASSERT_EQ(::chmod(old.c_str(), 0640), 0);
-  ASSERT_TRUE(open(old).value()->write("new"));
+  ASSERT_TRUE(open(old).value()->put("new"));
   EXPECT_EQ(content(old), "new");
   struct stat there{};
   ASSERT_EQ(::stat(old.c_str(), &there), 0);
@@ -74,7 +74,7 @@ TEST_F(OutputFileTest, LeavesTheOldFileOnAFullDisk) {
   const auto file = open(old).value();
   {
     const test::LimitedFileSize limit{100};
-    ASSERT_FALSE(file->write(std::string(1'000, 'x')));
+    ASSERT_FALSE(file->put(std::string(1'000, 'x')));
   }
   EXPECT_EQ(content(old), "good");
   EXPECT_EQ(files(), 1) << "the new one is taken away";
@@ -86,13 +86,13 @@ TEST_F(OutputFileTest, LeavesTheOldFileOnAFullDisk) {
 TEST_F(OutputFileTest, GrowsInPlaceAndEndsWithItsLastWholePiece) {
   const auto old = with("old", "what was there before");
   const auto file = open(old, Kind::kGrowing).value();
-  ASSERT_TRUE(file->write("one,"));
+  ASSERT_TRUE(file->put("one,"));
   EXPECT_EQ(content(old), "one,") << "others see it at once";
   {
     const test::LimitedFileSize limit{10};
-    EXPECT_FALSE(file->write("a long piece"));
+    EXPECT_FALSE(file->put("a long piece"));
   }
-  EXPECT_FALSE(file->write("two")) << "nothing comes after a gap";
+  EXPECT_FALSE(file->put("two")) << "nothing comes after a gap";
   EXPECT_EQ(content(old), "one,");
 }
 
@@ -114,7 +114,7 @@ TEST_F(OutputFileTest, KeepsASymbolicLink) {
   const auto target = with("other/file", "old");
   fs::create_symlink("other/file", folder_ / "link");
   fs::create_symlink("link", folder_ / "link to link");
-  ASSERT_TRUE(open(path("link to link")).value()->write("new"));
+  ASSERT_TRUE(open(path("link to link")).value()->put("new"));
   EXPECT_EQ(content(target), "new");
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
   EXPECT_TRUE(fs::is_symlink(folder_ / "link to link"));
@@ -122,7 +122,7 @@ TEST_F(OutputFileTest, KeepsASymbolicLink) {
 
 TEST_F(OutputFileTest, WritesWhereADanglingLinkLeads) {
   fs::create_symlink("later", folder_ / "link");
-  ASSERT_TRUE(open(path("link")).value()->write("new"));
+  ASSERT_TRUE(open(path("link")).value()->put("new"));
   EXPECT_EQ(content(path("later")), "new");
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
 }
@@ -133,9 +133,9 @@ TEST_F(OutputFileTest, RefusesALinkThatLeadsToItself) {
 }
 
 TEST_F(OutputFileTest, WritesDevicesInPlace) {
-  ASSERT_TRUE(open("/dev/null").value()->write("content"));
+  ASSERT_TRUE(open("/dev/null").value()->put("content"));
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
-  const auto full = open("/dev/full").value()->write("content");
+  const auto full = open("/dev/full").value()->put("content");
   ASSERT_FALSE(full);
   EXPECT_EQ(full.error().where, "/dev/full");
   EXPECT_THAT(full.error().hint, HasSubstr("space"));
@@ -146,7 +146,7 @@ TEST_F(OutputFileTest, WritesAFifoInPlace) {
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   const int reader = ::open(fifo.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   ASSERT_GE(reader, 0);
-  ASSERT_TRUE(open(fifo).value()->write("new"));
+  ASSERT_TRUE(open(fifo).value()->put("new"));
   std::array<char, 8> buffer{};
   EXPECT_EQ(::read(reader, buffer.data(), buffer.size()), 3);
   EXPECT_TRUE(fs::is_fifo(fifo));
@@ -157,7 +157,7 @@ TEST_F(OutputFileTest, WritesADescriptorOfThisProcessWhereItStands) {
   const int descriptor = ::open(with("file", "").c_str(), O_WRONLY | O_CLOEXEC);
   ASSERT_EQ(::write(descriptor, "before ", 7), 7);
   for (const auto* const folder : {"/dev/fd/", "/proc/self/fd/"}) {
-    ASSERT_TRUE(open(folder + std::to_string(descriptor)).value()->write("new "));
+    ASSERT_TRUE(open(folder + std::to_string(descriptor)).value()->put("new "));
   }
   ::close(descriptor);
   EXPECT_EQ(content(path("file")), "before new new ");
