@@ -68,6 +68,9 @@ function(armjig_library name)
   set_target_properties(armjig_${name} PROPERTIES EXPORT_NAME ${name})
   target_sources(armjig_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
                  FILES ${headers})
+  # For #include <armjig/...>, beside the spelling of this tree.
+  target_include_directories(armjig_${name}
+                             INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   set_property(GLOBAL APPEND PROPERTY ARMJIG_LIBRARIES armjig_${name})
   target_compile_features(armjig_${name} PUBLIC cxx_std_20)
   target_link_libraries(armjig_${name} PUBLIC ${arg_PUBLIC}

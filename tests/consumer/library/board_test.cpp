@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "emulators/parol6/arm.hpp"
-#include "harness/wire/parol6/joints.hpp"
+#include <armjig/emulators/parol6/arm.hpp>
+#include <armjig/harness/wire/parol6/joints.hpp>
 
 using namespace armjig;
 using namespace std::chrono_literals;

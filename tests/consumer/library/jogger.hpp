@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "harness/wire/parol6/joints.hpp"
+#include <armjig/harness/wire/parol6/joints.hpp>
 
 /// The program under test; yours looks different. It turns J1 by an angle.
 class Jogger {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "conformance/parol6/host/check.hpp"
-#include "conformance/program_check.hpp"
-#include "emulators/parol6/arm.hpp"
+#include <armjig/conformance/parol6/host/check.hpp>
+#include <armjig/conformance/program_check.hpp>
+#include <armjig/emulators/parol6/arm.hpp>
 #include "jogger.hpp"
 
 using namespace armjig;
