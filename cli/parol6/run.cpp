@@ -64,7 +64,8 @@ struct Halt {
 /// An arm on its rig, for one program.
 class Session {
  public:
-  explicit Session(Rig<StreamPort> rig) : rig_{std::move(rig)}, loop_{rig_.port(), drive_} {}
+  Session(Rig<StreamPort> rig, const Signals& signals)
+      : rig_{std::move(rig)}, loop_{rig_.port(), drive_}, signals_{signals} {}
 
   /// Waits for a sign of life.
   std::optional<Halt> begin() {
@@ -128,7 +129,7 @@ class Session {
   Rig<StreamPort> rig_;
   parol6::drive::Drive drive_;
   parol6::drive::DriveLoop loop_;
-  Signals signals_;
+  const Signals& signals_;
 };
 
 /// What it does, if all of it can be done from there. A long loop repeats itself: its first two
@@ -255,9 +256,10 @@ Exit run(const Device& device, const Options& options) {
   if (!claimed) return report(claimed.error());
   const auto plots = open_plots(options.plots);
   if (!plots) return report(plots.error());
+  const Signals signals;  // first, for a terminal's own handlers end the program without a stop
   auto rig = open_rig<OnStream>(device, *how);
   if (!rig) return report(rig.error());
-  Session session{*std::move(rig)};
+  Session session{*std::move(rig), signals};
   return run_on(session, *program, *planning, options, how->target, *plots);
 }
 
