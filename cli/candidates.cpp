@@ -46,7 +46,7 @@ Words with_beginning(std::string_view beginning, Words words) {
   return words;
 }
 
-/// `NAME=` of an option, or `NAME=VALUE`, behind the last of `marks` in what is typed.
+/// `NAME=` of an option, or `NAME=VALUE`, after the last of `marks` in what is typed.
 Words settings(const Device& device, const std::string& typed, std::string_view marks) {
   const auto begin = typed.find_last_of(marks) + 1;
   const auto equals = typed.find('=', begin);
@@ -104,7 +104,7 @@ Words values_of(const CLI::App& command, const CLI::Option& option, Devices devi
   return words;
 }
 
-/// What stands in front of the word that is being typed.
+/// What stands before the word that is being typed.
 struct Place {
   const CLI::App* command;
   const CLI::Option* option{};  ///< whose value comes next

@@ -25,13 +25,13 @@ constexpr auto kHelp =
     "It completes subcommands, options, devices, targets and names of requirements.";
 
 /// A shell, and the script that asks the program (`armjig __complete WORD...`) what may come.
-/// Where the program knows nothing, files are offered. What may go on gets no blank behind it.
+/// Where the program knows nothing, files are offered. What may go on gets no blank after it.
 struct Shell {
   std::string_view name;
   std::string_view script;
 };
 
-// Bash takes a colon or an equals sign for the end of a word, and wants what comes behind it only.
+// Bash takes a colon or an equals sign for the end of a word, and wants only what comes after it.
 constexpr std::string_view kBash = R"(_armjig() {
   local line=${COMP_LINE:0:COMP_POINT} typed
   local -a words

@@ -97,7 +97,7 @@ void add_colour_option(CLI::App& command, std::string& when) {
 }
 
 Style style_of(std::string_view when, std::FILE* stream) {
-  // The streams stand in front of the descriptors and have none of their own (cli/outputs.hpp).
+  // The streams stand before the descriptors and have none of their own (cli/outputs.hpp).
   const auto descriptor = stream == stderr ? STDERR_FILENO : STDOUT_FILENO;
   const bool is_liked =
       environment("NO_COLOR").empty() && environment("TERM") != "dumb" && ::isatty(descriptor) == 1;

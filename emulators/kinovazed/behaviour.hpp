@@ -52,7 +52,7 @@ struct Behaviour {
   float units_per_full = 0.0025F;  ///< kinovazed.joystick.scale
   Reach reach{};
   /// Off in both, since the shipped server does it only now and then: the third client that resets
-  /// before it has heard anything, with nobody served in front of it, ends the process.
+  /// before it has heard anything, with nobody served before it, ends the process.
   bool dies_of_resets = false;
 };
 

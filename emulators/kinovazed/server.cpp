@@ -235,7 +235,7 @@ void Server::push(ServerMessage message) {
 void Server::start_write() {
   const bool was_written = connections_.write(now_, encode(outbox_.front()).view());
   // kinovazed.death.mute: two failures are told at once. Later writes are not tried before the
-  // event loop has asked the system, and so fail behind what comes up meanwhile.
+  // event loop has asked the system, and so fail after what comes up meanwhile.
   const bool is_late = !was_written && is_connected_ && ++failed_writes_ > kPromptFailures;
   tasks_.push_back({is_late ? Task::Kind::kPoll : Task::Kind::kWritten, was_written});
 }

@@ -35,8 +35,8 @@ struct Eeprom {
 };
 
 /// What a node sends of a set, with its checksum. It trusts the counts: one above four leads it on
-/// into the fields behind the coefficients, as they lie in EEPROM and memory
-/// (recording random/mini-count5-active). Zeros stand for what is behind the set.
+/// into the fields after the coefficients, as they lie in EEPROM and memory
+/// (recording random/mini-count5-active). Zeros stand for what comes after the set.
 inline constexpr std::size_t kLongestReadBack = kSmallestSetSize + std::size_t{3} * 4 * UINT8_MAX;
 using ReadBack = BoundedBytes<kLongestReadBack>;
 [[nodiscard]] ReadBack read_back(const ControllerSet& set) noexcept;

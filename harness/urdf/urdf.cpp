@@ -58,7 +58,7 @@ std::string names_of(const std::vector<urdf::LinkSharedPtr>& links) {
 
 constexpr std::string_view kNoRobot = "it is not a robot description (URDF)";
 
-/// The text behind the next `mark`; empty if there is none.
+/// The text after the next `mark`; empty if there is none.
 std::string_view after(std::string_view text, std::string_view mark) {
   const auto found = text.find(mark);
   return found == std::string_view::npos ? "" : text.substr(found + mark.size());

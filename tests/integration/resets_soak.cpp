@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// 100,000 clients of `armjig emulate kinovazed` that connect and reset, some behind a command, some
-// behind a half-close. At the end it serves the next client, has no descriptor more than before,
+// 100,000 clients of `armjig emulate kinovazed` that connect and reset, some after a command, some
+// after a half-close. At the end it serves the next client, has no descriptor more than before,
 // and has not grown by 1 MiB.
 #include <fmt/core.h>
 

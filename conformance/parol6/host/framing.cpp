@@ -89,7 +89,7 @@ void Framing::judge_noise(Bytes noise, bool is_before_frame) {
   }
 }
 
-/// Many equal bytes, or what clears the store behind them: a whole one that is not accepted.
+/// Many equal bytes, or what clears the store after them: a whole one that is not accepted.
 bool Framing::is_reset(Bytes stray) {
   const auto are = [](Bytes bytes, std::byte value) {
     return std::ranges::all_of(bytes, [value](std::byte byte) { return byte == value; });

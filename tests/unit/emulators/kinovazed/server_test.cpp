@@ -112,7 +112,7 @@ TEST(KinovaServer, GoesMuteIfTwoMessagesWaitWhenAWriteFails) {
 }
 
 TEST(KinovaServer, GoesMuteOfFiveLinesOfAClientThatWaitedAndHasClosed) {
-  // The first write is taken, two fail at once, and behind the fourth the fifth message waits. So
+  // The first write is taken, two fail at once, and after the fourth the fifth message waits. So
   // does a small server on the event loop of the original.
   for (const auto count : {4, 5, 6, 25}) {
     Bench bench;
@@ -260,7 +260,7 @@ Duration reply_to_estop(ArmCall call, std::uint32_t late_repairs) {
 }
 
 TEST(KinovaServer, RepairsTheArmInTheMiddleOfAnEStop) {
-  // A stop is erase, axes and release with 10 ms behind each that works, a call takes 0.6 ms:
+  // A stop is erase, axes and release with 10 ms after each that works, a call takes 0.6 ms:
   // 31.8 ms; the repair has 50 ms of opening, two looks of 2.4 ms, taking control, and a stop.
   for (const auto call : {ArmCall::kErase, ArmCall::kReleaseStick}) {
     const auto reply = reply_to_estop(call, 0);

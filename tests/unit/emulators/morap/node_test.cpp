@@ -143,7 +143,7 @@ TEST(MorapNode, ReadsBackARefusedCountAndGoesOnIntoTheNextField) {
   EXPECT_TRUE(same_bytes(torn_set(kExample9, "20 00 32 01 05", 32),
                          hex("00 32 01 05 CD CC CC 3D CD CC 4C 3E 9A 99 99 3E CD CC CC 3E "
                              "00 00 00 00 00 00 0A D7 23 3C 0B 00")));
-  // With 255, byte 62 is the first behind the record; zeros stand for what is there.
+  // With 255, byte 62 is the first after the record; zeros stand for what is there.
   const auto longest = torn_set(kExample9, "20 00 32 01 FF", 256);
   EXPECT_TRUE(same_bytes(Bytes{longest}.subspan(52, 8), hex("CD CC CC BE 0A D7 23 3C")));
   EXPECT_TRUE(same_bytes(Bytes{longest}.subspan(60, 4), hex("00 00 00 00")));
