@@ -3,25 +3,15 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
+
+#include "harness/core/number.hpp"
 
 namespace armjig::cli {
 namespace {
-
-/// All of the text as a number.
-template <class Number, class... Form>
-std::optional<Number> parse(std::string_view text, Form... form) {
-  Number number{};
-  const auto* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number, form...);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return number;
-}
 
 /// A whole number of either sign.
 struct Whole {
@@ -34,7 +24,7 @@ std::optional<Whole> parse_whole(std::string_view text) {
   if (is_negative || text.starts_with('+')) text.remove_prefix(1);
   const bool is_hexadecimal = text.starts_with("0x") || text.starts_with("0X");
   const auto size =
-      parse<std::uint64_t>(text.substr(is_hexadecimal ? 2 : 0), is_hexadecimal ? 16 : 10);
+      whole_text_as<std::uint64_t>(text.substr(is_hexadecimal ? 2 : 0), is_hexadecimal ? 16 : 10);
   if (!size) return std::nullopt;
   return Whole{is_negative && *size > 0, *size};
 }
@@ -65,7 +55,7 @@ CLI::Validator whole(std::int64_t least, std::uint64_t most) {
 CLI::Validator number(double least, double most) {
   return {[least, most](std::string& text) -> std::string {
             const auto value =
-                parse<double>(std::string_view{text}.substr(text.starts_with('+') ? 1 : 0));
+                whole_text_as<double>(std::string_view{text}.substr(text.starts_with('+') ? 1 : 0));
             if (value && *value >= least && *value <= most) return {};
             return fmt::format("'{}' is not a number from {} to {}", text, least, most);
           },

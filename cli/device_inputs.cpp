@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <optional>
-#include <system_error>
 #include <utility>
+
+#include "harness/core/number.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -33,14 +33,6 @@ std::string_view next_word(std::string_view& line) noexcept {
   const auto word = line.substr(0, line.find_first_of(kBlanks));
   line.remove_prefix(word.size());
   return word;
-}
-
-std::optional<std::int64_t> number_in(std::string_view word) noexcept {
-  std::int64_t value{};
-  const auto* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, value);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return value;
 }
 
 void tell(std::string_view text) { fmt::print(stderr, "armjig: {}\n", text); }
@@ -80,7 +72,7 @@ void DeviceInputs::obey(std::string_view line) {
     for (const auto& input : inputs_) tell(fmt::format("{:<21} {}", input.name, input.values));
     return;
   }
-  const auto value = number_in(said);
+  const auto value = whole_text_as<std::int64_t>(said);
   if (!value || !next_word(line).empty()) {
     return tell(fmt::format("'{}': write NAME NUMBER; 'help' lists the names", name));
   }

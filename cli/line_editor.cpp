@@ -8,10 +8,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include "cli/environment.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -41,12 +42,6 @@ std::string common_start(const std::vector<std::string>& words) {
     start.erase(end, start.end());
   }
   return start;
-}
-
-const char* environment(const char* name) {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread, and nobody sets it
-  const char* const value = std::getenv(name);
-  return value == nullptr ? "" : value;
 }
 
 }  // namespace
@@ -220,9 +215,9 @@ void LineEditor::set_prompt(const std::string& prompt) { editor_->set_prompt(pro
 void LineEditor::print(std::string_view text) { editor_->print(text); }
 
 std::string history_file() {
-  const std::string state = environment("XDG_STATE_HOME");
+  const std::string state{environment("XDG_STATE_HOME")};
   if (!state.empty()) return state + "/armjig/history";
-  const std::string home = environment("HOME");
+  const std::string home{environment("HOME")};
   return home.empty() ? "" : home + "/.local/state/armjig/history";
 }
 

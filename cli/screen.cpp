@@ -8,8 +8,9 @@
 
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
+
+#include "cli/environment.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -34,10 +35,8 @@ Size terminal_size() {
 }  // namespace
 
 bool has_screen() {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread, and nobody sets it
-  const char* const terminal = std::getenv("TERM");
-  return ::isatty(STDOUT_FILENO) == 1 && terminal != nullptr &&
-         std::string_view{terminal} != "dumb";
+  const auto terminal = environment("TERM");
+  return ::isatty(STDOUT_FILENO) == 1 && !terminal.empty() && terminal != "dumb";
 }
 
 Screen::Screen() {

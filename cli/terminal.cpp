@@ -5,20 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cstdlib>
 #include <vector>
 
 #include "cli/choice.hpp"
+#include "cli/environment.hpp"
+#include "harness/core/number.hpp"
 
 namespace armjig::cli {
 namespace {
-
-std::string_view environment(const char* name) {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread, and nobody sets it
-  const char* const value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> lines;
@@ -107,9 +101,7 @@ Style style_of(std::string_view when, std::FILE* stream) {
 std::size_t help_width() {
   constexpr std::size_t kLeast = 60;
   constexpr std::size_t kDefault = 80;
-  const auto columns = environment("COLUMNS");
-  std::size_t width = 0;
-  std::from_chars(columns.data(), columns.data() + columns.size(), width);
+  std::size_t width = whole_text_as<std::size_t>(environment("COLUMNS")).value_or(0);
   winsize size{};
   if (width == 0 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) width = size.ws_col;
   return width == 0 ? kDefault : std::max(width, kLeast);

@@ -117,21 +117,19 @@ class Mutation {
     }
     try_all();
     if (options_.profile != kShipped) excuse_survivors();
-    if (options_.proves_requirements && !is_stopped()) prove_requirements();
-    if (is_stopped()) result_.unproven.clear();
+    if (options_.proves_requirements && !options_.must_stop()) prove_requirements();
+    if (options_.must_stop()) result_.unproven.clear();
     return std::move(result_);
   }
 
  private:
-  [[nodiscard]] bool is_stopped() const { return options_.must_stop && options_.must_stop(); }
-
   /// Only what passes on a sound device can show a fault.
   Outcome<void> try_sound() {
     auto trial = open({}, options_.profile);
     if (!trial) return tl::unexpected{trial.error()};
     (void)trial->begin();
     for (const auto* one : select(suite_, options_.profile, {})) {
-      if (is_stopped()) break;
+      if (options_.must_stop()) break;
       if (trial->finding(*one)) {
         result_.broken_on_sound.push_back(name_of(*one));
       } else {
@@ -172,7 +170,7 @@ class Mutation {
     std::ranges::stable_partition(
         order, [&](const Case* one) { return is_hinted(*one, entry_.hints, section); });
     for (auto* fate : fates) {
-      fate->was_tried = !is_stopped();
+      fate->was_tried = !options_.must_stop();
       if (!fate->was_tried) continue;
       const auto killer = try_mutant(*fate, order);
       if (killer != order.end()) std::rotate(order.begin(), killer, killer + 1);
@@ -194,7 +192,7 @@ class Mutation {
       return order.end();
     }
     for (auto one = order.begin(); one != order.end(); ++one) {
-      if (is_stopped()) {
+      if (options_.must_stop()) {
         fate.was_tried = false;
         return order.end();
       }
@@ -219,12 +217,12 @@ class Mutation {
     for (const auto* one : cases_) demanded.insert(one->requirement);
     in_parallel(options_.threads, result_.fates.size(), [&](std::size_t i) {
       auto& [mutant, killer, finding, was_tried] = result_.fates[i];
-      if (is_stopped()) was_tried = was_tried && !killer.empty();
+      if (options_.must_stop()) was_tried = was_tried && !killer.empty();
       if (!was_tried) return;
       if (!killer.empty()) mutant.equivalent.clear();  // here it is not
       if (!killer.empty() || !mutant.equivalent.empty()) return;
       const auto broken = broken_when_shipped(mutant, shipped_cases);
-      was_tried = !is_stopped();
+      was_tried = !options_.must_stop();
       const bool is_left_open =
           std::ranges::none_of(broken, [&](std::string_view id) { return demanded.contains(id); });
       if (broken.empty() || !is_left_open) return;
@@ -238,7 +236,7 @@ class Mutation {
     if (!trial || !trial->begin()) return {};
     std::vector<std::string_view> broken;
     for (const auto* one : cases) {
-      if (is_stopped()) return {};
+      if (options_.must_stop()) return {};
       if (trial->finding(*one)) broken.push_back(one->requirement);
     }
     return broken;
@@ -276,7 +274,7 @@ class Mutation {
       return is_hinted(*own.front(), entry_.hints, mutant->section);
     });
     return std::ranges::any_of(order, [&](const Mutant* mutant) {
-      if (is_stopped()) return true;
+      if (options_.must_stop()) return true;
       auto trial = open(mutant->name, options_.profile);
       if (!trial || !trial->begin()) return false;
       return std::ranges::any_of(own,

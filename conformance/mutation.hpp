@@ -68,8 +68,8 @@ struct MutationOptions {
   /// Whether a mutant is sought for each must-requirement that none of the first killers proved.
   bool proves_requirements = true;
   /// Asked before each case, from several threads: mutants from then on are not tried, and nothing
-  /// is said of requirements. Empty: the run goes to its end.
-  std::function<bool()> must_stop{};
+  /// is said of requirements.
+  MustStop must_stop = [] { return false; };
 };
 
 /// A suite tried on its mutants.

@@ -30,8 +30,8 @@ struct RunOptions {
   std::string target{};   ///< as the user wrote it, for the report
   std::string command{};  ///< the command line, without filter, that does the same again
   /// Asked before each case and after it: cases from then on are skipped, and so is one during
-  /// which it came. Empty: the run goes to its end.
-  MustStop must_stop{};
+  /// which it came.
+  MustStop must_stop = [] { return false; };
 };
 
 /// Runs the selected cases and calls `on_row` after each. The device is asked for a sign of life

@@ -2,19 +2,12 @@
 #include "conformance/selection.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
-#include <system_error>
+
+#include "harness/core/number.hpp"
 
 namespace armjig {
 namespace {
-
-std::optional<std::size_t> parse_count(std::string_view text) noexcept {
-  std::size_t value{};
-  const auto* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stop == end ? std::optional{value} : std::nullopt;
-}
 
 bool is_meant(const Suite& suite, const Case& one, Profile profile, const Selection& selection) {
   return holds_in(requirement_of(suite, one).profiles, profile) && one.tier <= selection.tier &&
@@ -26,8 +19,8 @@ bool is_meant(const Suite& suite, const Case& one, Profile profile, const Select
 Outcome<Shard> parse_shard(std::string_view text) {
   const auto slash = text.find('/');
   if (slash != std::string_view::npos) {
-    const auto index = parse_count(text.substr(0, slash));
-    const auto count = parse_count(text.substr(slash + 1));
+    const auto index = whole_text_as<std::size_t>(text.substr(0, slash));
+    const auto count = whole_text_as<std::size_t>(text.substr(slash + 1));
     if (index && count && *index >= 1 && *index <= *count) return Shard{*index, *count};
   }
   return problem(ErrorCode::kBadValue, "--shard " + std::string{text},

@@ -4,15 +4,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string_view>
-#include <system_error>
 
 #include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "harness/arm/orientation.hpp"
+#include "harness/core/number.hpp"
 #include "harness/files/user_file.hpp"
 #include "harness/motion/parol6/joint_table.hpp"
 #include "harness/script/check.hpp"
@@ -27,15 +26,12 @@ std::optional<parol6::JointSteps> parse_places(std::string_view text) {
   parol6::JointSteps places;
   for (std::size_t j = 0; j < places.size(); ++j) {
     const auto word = text.substr(0, text.find(','));
-    const auto* const end = word.data() + word.size();
-    std::int32_t value = 0;
-    const auto read = std::from_chars(word.data(), end, value);
+    const auto value = whole_text_as<std::int32_t>(word);
     const bool is_last = j + 1 == places.size();
-    if (read.ec != std::errc{} || read.ptr != end || value < -kMost || value >= kMost ||
-        is_last != (word.size() == text.size())) {
+    if (!value || *value < -kMost || *value >= kMost || is_last != (word.size() == text.size())) {
       return std::nullopt;
     }
-    places[j] = Steps{value};
+    places[j] = Steps{*value};
     if (!is_last) text.remove_prefix(word.size() + 1);
   }
   return places;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <system_error>
 
+#include "harness/core/number.hpp"
+
 namespace armjig {
 
 Parsed<Number> parse_number(std::string_view text) {
@@ -43,17 +45,9 @@ Parsed<Duration> parse_seconds(std::string_view text) {
   return std::chrono::round<Duration>(std::chrono::duration<double>{number->value});
 }
 
-std::optional<std::int32_t> whole_number(std::string_view text) {
-  std::int32_t value{};
-  const auto* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error == std::errc{} && stop == end) return value;
-  return std::nullopt;
-}
-
 Parsed<std::int16_t> parse_whole(std::string_view what, std::string_view text, int least,
                                  int most) {
-  const auto value = whole_number(text);
+  const auto value = whole_text_as<std::int32_t>(text);
   if (value && *value >= least && *value <= most) return static_cast<std::int16_t>(*value);
   return wrong(fmt::format("'{}' is no {}: a whole number from {} to {}", text, what, least, most));
 }

@@ -32,9 +32,6 @@ struct Number {
 /// `1.5` or `1.5s`: above 0, at most an hour.
 [[nodiscard]] Parsed<Duration> parse_seconds(std::string_view text);
 
-/// A whole number of 32 bits; none if it is something else.
-[[nodiscard]] std::optional<std::int32_t> whole_number(std::string_view text);
-
 /// A whole number in a range; `what` is named in the sentence.
 [[nodiscard]] Parsed<std::int16_t> parse_whole(std::string_view what, std::string_view text,
                                                int least, int most);

@@ -4,28 +4,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
-#include <system_error>
 
 #include "harness/core/nearest.hpp"
+#include "harness/core/number.hpp"
 
 namespace armjig {
 namespace {
 
 constexpr std::string_view kDots = "..";
 constexpr std::string_view kAnd = ",...";
-
-/// All of the text as a number.
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number number{};
-  const auto* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return number;
-}
 
 std::string_view one_of(std::string_view values) {
   return values.ends_with(kAnd) ? values.substr(0, values.size() - kAnd.size()) : values;
@@ -35,9 +24,9 @@ std::string_view one_of(std::string_view values) {
 template <class Number>
 std::optional<Number> parse_in(std::string_view range, std::string_view text, Number most) {
   const auto dots = range.find(kDots);
-  const auto low = parse<Number>(range.substr(0, dots));
-  const auto high = parse<Number>(range.substr(dots + kDots.size()));
-  const auto number = parse<Number>(text);
+  const auto low = whole_text_as<Number>(range.substr(0, dots));
+  const auto high = whole_text_as<Number>(range.substr(dots + kDots.size()));
+  const auto number = whole_text_as<Number>(text);
   const bool is_in = number && !(low && *number < *low) && *number <= high.value_or(most);
   return is_in ? number : std::nullopt;
 }

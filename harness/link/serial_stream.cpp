@@ -11,12 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
-#include <climits>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "harness/core/number.hpp"
 #include "harness/link/descriptor.hpp"
 #include "harness/link/terminal_settings.hpp"
 
@@ -156,11 +155,7 @@ Result<UsbId> parse_usb_id(std::string_view text) {
   const auto colon = text.find(':');
   if (colon == std::string_view::npos) return fail(ErrorCode::kBadValue);
   const auto number = [](std::string_view digits) -> std::optional<std::uint16_t> {
-    std::uint16_t value{};
-    const auto* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, value, 16);
-    if (digits.size() > 4 || error != std::errc{} || stop != end) return std::nullopt;
-    return value;
+    return digits.size() > 4 ? std::nullopt : whole_text_as<std::uint16_t>(digits, 16);
   };
   const auto vendor = number(text.substr(0, colon));
   const auto product = number(text.substr(colon + 1));
@@ -188,11 +183,11 @@ Outcome<SerialAddress> parse_serial_address(std::string_view text, SerialLine us
   const auto comma = text.rfind(',');
   address.path = text.substr(0, comma);
   if (comma != std::string_view::npos) {
-    const auto digits = text.substr(comma + 1);
-    const auto* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, address.line.baud);
-    const bool is_speed = address.line.baud > 0 && address.line.baud <= INT_MAX;
-    if (error != std::errc{} || stop != end || !is_speed) address.path.clear();
+    const auto baud = whole_text_as<int>(text.substr(comma + 1));
+    if (baud && *baud > 0)
+      address.line.baud = *baud;
+    else
+      address.path.clear();
   }
   if (!address.path.empty()) return address;
   return problem(ErrorCode::kBadTarget, fmt::format("serial:{}", text),

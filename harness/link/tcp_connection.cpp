@@ -10,7 +10,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <cerrno>
-#include <charconv>
+
+#include "harness/core/number.hpp"
 
 namespace armjig {
 namespace {
@@ -21,9 +22,7 @@ using boost::system::error_code;
 constexpr Duration kLongestPatience = std::chrono::hours{1};  // a far deadline must not overflow
 
 bool is_port(std::string_view text) noexcept {
-  unsigned value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && value >= 1 && value <= 65535;
+  return whole_text_as<std::uint16_t>(text).value_or(0) != 0;
 }
 
 /// `[::1]` without its brackets; empty if they do not match or an IPv6 address has none.

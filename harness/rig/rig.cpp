@@ -58,18 +58,15 @@ template <>
 struct Layers<StreamPort> {
   using Logged = LoggedStream;
   using Guarded = GuardedStream;
-  using Stoppable = StoppableStream;
 };
 template <>
 struct Layers<SessionSource> {
   using Logged = LoggedSource;
-  using Stoppable = StoppableSource;
 };
 template <>
 struct Layers<BusPort> {
   using Logged = LoggedBus;
   using Guarded = GuardedBus;
-  using Stoppable = StoppableBus;
 };
 
 template <class Port>
@@ -145,8 +142,7 @@ Outcome<Rig<Port>> Rig<Port>::open(const Wiring<Port>& wiring, const RigOptions&
     rig.port_ = *std::move(impaired);
   }
   if (options.must_stop && !options.target.is_emulated()) {
-    using Stoppable = typename Layers<Port>::Stoppable;
-    rig.port_ = std::make_unique<Stoppable>(std::move(rig.port_), options.must_stop);
+    rig.port_ = make_stoppable(std::move(rig.port_), options.must_stop);
   }
   return rig;
 }

@@ -2,10 +2,10 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "harness/core/number.hpp"
 #include "harness/script/lines.hpp"
 
 namespace armjig::script {
@@ -51,11 +51,7 @@ template <class Value>
 std::optional<Value> read_number(std::string_view text) noexcept {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
-  Value value{};
-  const auto* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
-  return value;
+  return whole_text_as<Value>(text);
 }
 
 Command read_delay(std::string_view arguments) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "harness/console/kinovazed/view.hpp"
+#include "harness/core/number.hpp"
 #include "harness/drive/kinovazed/client.hpp"
 
 namespace armjig::kinovazed::console {
@@ -236,7 +237,7 @@ DeviceConsole::Read Console::mode(Words words) {
 DeviceConsole::Read Console::move(Words words) {
   std::array<std::int32_t, 3> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto number = whole_number(words[i]);
+    const auto number = whole_text_as<std::int32_t>(words[i]);
     if (!number) {
       return wrong(fmt::format("'{}' is no deflection: a whole number, 400 is full", words[i]));
     }
