@@ -185,6 +185,7 @@ Exit run(const Device& device, const Suite& suite, Options options) {
     return is_running && (signals.has_come() || is_in_vain);
   };
   how->must_stop = must_stop;
+  how->when_left = WhenLeft::kSayNothing;  // cases look at what an arm does without its client
   options.run.must_stop = must_stop;
   auto bench = open_bench(device, *how);
   if (!bench) return report(bench.error());

@@ -51,6 +51,9 @@ class Bench {
   /// The most that was seen then; in virtual time what the device itself takes.
   [[nodiscard]] Duration noise() const noexcept { return noise_; }
 
+  /// After this process did not run for a while: what was stopped because of that may move again.
+  virtual void resume() {}
+
   /// The link's own clock, virtual or real.
   [[nodiscard]] virtual Instant now() const = 0;
   /// Why the link is gone; none as long as it is there.

@@ -39,6 +39,9 @@ class PortBench : public Bench {
     skip(std::string{"needs a hand at the device, to set "}.append(input));
   }
 
+  void resume() override {
+    if (const auto resumed = rig_.resume(); !resumed) this->lose_link(resumed.error());
+  }
   [[nodiscard]] Instant now() const override { return port().now(); }
 
  protected:

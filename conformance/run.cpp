@@ -54,15 +54,13 @@ class Run {
     if (is_alive_) bench_.measure_noise();
     add_facts(cases.size());
     for (const auto* one : cases) add(judge(*one));
-    if (is_alive_ && !is_stopped()) (void)check_alive("after the last case");
+    if (is_alive_ && !options_.must_stop()) (void)check_alive("after the last case");
     for (const auto& waiver : options_.waivers) check_use(waiver);
     if (restarts_ > 0) add_missed();
     return std::move(report_);
   }
 
  private:
-  [[nodiscard]] bool is_stopped() const { return options_.must_stop && options_.must_stop(); }
-
   void add_facts(std::size_t selected) {
     report_.title = fmt::format("Conformance of {}", suite_.device);
     report_.facts = {
@@ -90,6 +88,7 @@ class Run {
   auto undisturbed(Find find, IsGood is_good) {
     for (int start = 1;; ++start) {
       const auto before = missed();
+      if (std::exchange(missed_before_, before) != before) bench_.resume();
       auto found = find();
       is_disturbed_ = missed() != before && !is_good(found);
       if (!is_disturbed_ || bench_.error() || start == kMostStarts) return found;
@@ -116,7 +115,7 @@ class Run {
     } else if (judgement.verdict == Verdict::kFail && deviates_as_known(one)) {
       judgement.verdict = Verdict::kDeviation;
     }
-    if (is_stopped()) {  // nobody knows what it would have come to
+    if (options_.must_stop()) {  // nobody knows what it would have come to
       return row_of(one, {{Verdict::kSkipped, {}, std::string{kStopped}}});
     }
     if (is_alive_) blame_start(one.start);
@@ -133,7 +132,7 @@ class Run {
         return fmt::format("needs --allow {}", to_string(hazard));
       }
     }
-    if (is_stopped()) return std::string{kStopped};
+    if (options_.must_stop()) return std::string{kStopped};
     if (!is_alive_) return "the target does not answer";
     if (has_failed_ && options_.stops_at_first_failure) return "a case failed before";
     return std::nullopt;
@@ -142,7 +141,7 @@ class Run {
   Finding run_repeatedly(const Case& one) {
     auto finding = run_once(one, options_.profile);
     std::map<Verdict, int> verdicts{{finding.judgement.verdict, 1}};
-    for (int i = 1; i < options_.repeat && !bench_.error() && !is_stopped(); ++i) {
+    for (int i = 1; i < options_.repeat && !bench_.error() && !options_.must_stop(); ++i) {
       auto again = run_once(one, options_.profile);
       ++verdicts[again.judgement.verdict];
       again.duration += finding.duration;
@@ -270,7 +269,7 @@ class Run {
           return bench_.is_alive();
         },
         std::identity{});
-    if (is_alive || is_stopped()) return true;
+    if (is_alive || options_.must_stop()) return true;
     auto row = row_of_device("alive", Verdict::kError);
     row.summary = fmt::format("no sign of life {}", when);
     row.expected = "an answer to a good message";
@@ -316,6 +315,7 @@ class Run {
   std::map<std::uint8_t, Judgement> out_of_reach_;  ///< start states, and why
   std::set<std::uint8_t> blamed_;                   ///< those with a row of their own
   int restarts_ = 0;                                ///< of cases, because this process did not run
+  Duration missed_before_{};                        ///< what was found last
   bool is_disturbed_ = false;                       ///< what was found last says nothing
   bool is_alive_ = false;
   bool has_failed_ = false;

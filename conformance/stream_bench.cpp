@@ -56,8 +56,8 @@ void StreamBench::read_until(Instant deadline) {
 
 /// What a board shows that was stopped in the middle of a case says nothing about it.
 void StreamBench::skip_if_stopped() {
-  if (!rig().is_unsupervised() || std::exchange(knows_it_is_stopped_, true)) return;
-  skip(rig().last_refusal()->reason);
+  const bool knew = std::exchange(knows_it_is_stopped_, rig().is_unsupervised());
+  if (knows_it_is_stopped_ && !knew) skip(rig().last_refusal()->reason);
 }
 
 }  // namespace armjig

@@ -25,9 +25,18 @@ void GuardState::give_sign_of_life() {
   for (auto* const guard : guards_) guard->report_life();
 }
 
+Result<void> GuardState::resume() {
+  for (auto* const guard : guards_) {
+    if (auto resumed = guard->resume(); !resumed) return resumed;
+  }
+  is_unsupervised = false;
+  return {};
+}
+
 Guard::Guard(std::unique_ptr<Judge> judge, Permissions permissions,
              std::shared_ptr<GuardState> watch, Patience patience)
     : judge_{std::move(judge)},
+      granted_{permissions},
       permissions_{permissions},
       watch_{std::move(watch)},
       patience_{patience} {
@@ -39,18 +48,31 @@ Guard::~Guard() { std::erase(watch_->guards_, this); }
 
 Result<void> Guard::begin(const std::optional<Lifeline>& line) {
   is_in_step_ = false;
-  if (line && permissions_.allow_motion()) {
-    auto started = Supervisor::start(*line, judge_->stop());
-    if (!started) return tl::unexpected{started.error()};
-    supervisor_ = *std::move(started);
-    report_life();
-  }
+  line_ = line;
+  if (auto supervised = supervise(); !supervised) return supervised;
   return fall_into_step();
+}
+
+Result<void> Guard::supervise() {
+  if (!line_ || !permissions_.allow_motion()) return {};
+  auto started = Supervisor::start(*line_, judge_->stop());
+  if (!started) return tl::unexpected{started.error()};
+  supervisor_ = *std::move(started);
+  report_life();
+  return {};
+}
+
+Result<void> Guard::resume() {
+  if (!std::exchange(is_unsupervised_, false)) return {};
+  supervisor_.reset();  // it has ended, or will when it has stopped the device
+  permissions_ = granted_;
+  return supervise();
 }
 
 void Guard::end() {
   if (supervisor_) (void)supervisor_->tell(Supervisor::Motion::kNone);
   supervisor_.reset();
+  line_.reset();
 }
 
 Result<void> Guard::admit(Messages messages) {

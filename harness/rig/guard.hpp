@@ -25,6 +25,11 @@ class GuardState {
   /// Tells the supervisors of all of them that this program lives.
   void give_sign_of_life();
 
+  /// After a supervisor has stopped the device: each guard without one gets another, and permits
+  /// again what it did at first. For those who know why this program was silent, and what state
+  /// the device is in now. Does nothing as long as all is well. Errors: as for `Guard::begin`.
+  [[nodiscard]] Result<void> resume();
+
  private:
   friend class Guard;
   std::vector<Guard*> guards_;
@@ -91,6 +96,8 @@ class Guard {
  private:
   friend class GuardState;
   [[nodiscard]] Supervisor::Motion motion() const;
+  [[nodiscard]] Result<void> supervise();
+  [[nodiscard]] Result<void> resume();
   [[nodiscard]] Result<void> fall_into_step();
   [[nodiscard]] Result<void> hand_over(Bytes message);
   void refuse(Refusal refusal);
@@ -99,7 +106,9 @@ class Guard {
   void stop();
 
   std::unique_ptr<Judge> judge_;
-  Permissions permissions_;
+  Permissions granted_;
+  Permissions permissions_;  ///< what is left of them
+  std::optional<Lifeline> line_;
   std::shared_ptr<GuardState> watch_;
   Patience patience_;
   std::optional<Supervisor> supervisor_;

@@ -68,6 +68,11 @@ class Rig {
     return watch_ != nullptr && watch_->is_unsupervised;
   }
 
+  /// Lets it move again: see `GuardState::resume`.
+  [[nodiscard]] Result<void> resume() {
+    return watch_ == nullptr ? Result<void>{} : watch_->resume();
+  }
+
   /// What the impairments did, of all connections together; none if there are none.
   [[nodiscard]] std::optional<ImpairmentStatistics> impairments() const {
     return count_ ? std::optional{count_()} : std::nullopt;

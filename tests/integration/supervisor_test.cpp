@@ -192,8 +192,11 @@ Result<void> command(Activity activity, drive::Drive& drive, int cycle) {
   return {};
 }
 
+/// What a program does when its arm was stopped because nobody heard of it.
+enum class WhenForbidden { kEnd, kResume };
+
 /// Moves arms for ever, if it is let.
-int move(const std::vector<std::string>& targets, Activity activity) {
+int move(const std::vector<std::string>& targets, Activity activity, WhenForbidden when_forbidden) {
   const Wiring<StreamPort> wiring{
       .device = "parol6", .make_judge = rig::make_judge, .open_real = open_target<StreamPort>};
   std::deque<Rig<StreamPort>> rigs;
@@ -212,7 +215,10 @@ int move(const std::vector<std::string>& targets, Activity activity) {
     for (std::size_t i = 0; i < rigs.size(); ++i) {
       (void)command(activity, drives[i], cycle);
       const auto done = loops[i].cycle();
-      if (!done) return done.error().code == ErrorCode::kForbidden ? kForbidden : kPortFailed;
+      if (done) continue;
+      if (done.error().code != ErrorCode::kForbidden) return kPortFailed;
+      if (when_forbidden == WhenForbidden::kEnd) return kForbidden;
+      if (!rigs[i].resume() || !drives[i].enable() || !loops[i].cycle()) return kPortFailed;
     }
   }
 }
@@ -220,8 +226,10 @@ int move(const std::vector<std::string>& targets, Activity activity) {
 /// A child process that moves arms.
 class Mover {
  public:
-  Mover(const std::vector<std::string>& targets, Activity activity) : pid_{::fork()} {
-    if (pid_ == 0) ::_exit(move(targets, activity));
+  Mover(const std::vector<std::string>& targets, Activity activity,
+        WhenForbidden when_forbidden = WhenForbidden::kEnd)
+      : pid_{::fork()} {
+    if (pid_ == 0) ::_exit(move(targets, activity, when_forbidden));
   }
   Mover(const Mover&) = delete;
   Mover& operator=(const Mover&) = delete;
@@ -377,6 +385,27 @@ TEST_F(SupervisorTest, AnArmStopsWhenItsProgramHangsAndDoesNotGoOn) {
     SCOPED_TRACE(static_cast<int>(activity));
     hang(activity, dice);
   }
+}
+
+TEST_F(SupervisorTest, AProgramThatResumesMovesItsArmAgainAndIsWatchedAgain) {
+  Bench bench;
+  Mover mover{{bench.target()}, Activity::kJog, WhenForbidden::kResume};
+  bench.start();
+  for (int i = 0; i < 2; ++i) {
+    expect_motion(bench.sight());
+    const auto moment = Wall::now();
+    mover.signal(SIGSTOP);
+    expect_disabled(bench.sight());
+    expect_rest(bench.sight(), moment);
+    const auto last = bench.sight().last_motion.load();
+    mover.signal(SIGCONT);
+    ASSERT_TRUE(wait_until([&] { return bench.sight().last_motion.load() > last; }));
+    ASSERT_THAT(supervisors_of(mover.pid()), ::testing::SizeIs(1));
+  }
+  const auto moment = Wall::now();
+  mover.signal(SIGKILL);
+  expect_disabled(bench.sight());
+  expect_rest(bench.sight(), moment);
 }
 
 TEST_F(SupervisorTest, TwoArmsOfOneProgramBothStop) {
