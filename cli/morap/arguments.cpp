@@ -23,7 +23,7 @@ TuneOptions add_tune_options(CLI::App& app, TuneArguments& arguments) {
   auto* inertia = app.add_option("--inertia", arguments.inertia,
                                  "of what hangs on the output shaft, kg m^2, up to 10")
                       ->type_name("J")
-                      ->check(number(1e-5, 10));
+                      ->check(number(1e-5, kLargestInertia));
   auto* pole =
       app.add_option("--pole", arguments.pole, "of the closed loop, 1/s, -200 to 0: as in -9")
           ->type_name("W")
@@ -34,10 +34,12 @@ TuneOptions add_tune_options(CLI::App& app, TuneArguments& arguments) {
 void add_motor_option(CLI::App& app, std::string& motor) {
   app.add_option("--motor", motor, "of the joint: dcx22l with gear 231:1 or dcx26l with 149:1")
       ->type_name("NAME")
-      ->check(one_of({"dcx22l", "dcx26l"}))
+      ->check(one_of({std::string{kDcx22l.name}, std::string{kDcx26l.name}}))
       ->capture_default_str();
 }
 
-Eeprom eeprom_of(const std::string& motor) { return motor == "dcx26l" ? dcx26l() : dcx22l(); }
+Eeprom eeprom_of(const std::string& motor) {
+  return morap::emulation::eeprom_of(motor == kDcx26l.name ? kDcx26l : kDcx22l, 0);
+}
 
 }  // namespace armjig::cli

@@ -41,7 +41,7 @@ constexpr auto kHelp =
 struct Options {
   TargetOptions target;
   std::uint8_t node = 2;
-  std::string motor = "dcx22l";
+  std::string motor{morap::kDcx22l.name};
   TuneArguments tuning;
   std::string file;
   std::string controller = "both";

@@ -49,7 +49,7 @@ struct Options {
 
 std::string guess(BusAddress address) {
   if (address.value == morap::pen::kAddress) return "MORAP pen end-effector (or node 9)";
-  const auto node = static_cast<std::uint8_t>(address.value ^ morap::kNodeBaseAddress);
+  const auto node = morap::node_of(address.value);
   if (node <= morap::kLastDocumentedNode) return fmt::format("MORAP node {}", node);
   if (node < morap::kLastNode) return fmt::format("MORAP node {}, not documented", node);
   return "unknown";

@@ -44,7 +44,7 @@ constexpr auto kHelp =
 struct Options {
   TuneArguments tuning;
   std::string params;
-  std::string motor = "dcx22l";
+  std::string motor{kDcx22l.name};
   double step = 0.5;
   double seconds = 2;
   double viscous = 0;

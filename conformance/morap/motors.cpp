@@ -141,8 +141,7 @@ constexpr auto kDcx26lTuned = std::to_array<Tuned>({
 });
 
 constexpr std::array kMotors{
-    Motor{.name = "dcx22l",
-          .eeprom = emulation::dcx22l,
+    Motor{.known = kDcx22l,
           .position_set = "00 71 02 02 CE 19 C9 BF 86 C9 10 40 02 CE 19 C9 BF 86 C9 10 40 01 C7 BA "
                           "78 BF 00 00 00 00 A8",
           .speed_set = "01 F4 01 02 FE 65 77 3D FE 65 77 3D 02 A5 4E 80 BF 3C 4E D1 3F 01 D0 44 18 "
@@ -153,8 +152,7 @@ constexpr std::array kMotors{
           .thousand_counts = "8B 68 59 3D",
           .standstill_levels = 69,
           .tuned = kDcx22lTuned},
-    Motor{.name = "dcx26l",
-          .eeprom = emulation::dcx26l,
+    Motor{.known = kDcx26l,
           .position_set = "00 71 02 02 5D FE CB BF 65 AA 00 40 02 5D FE CB BF 65 AA 00 40 01 C7 BA "
                           "78 BF 00 00 00 00 5C",
           .speed_set = "01 90 01 02 1E A7 E8 3C 1E A7 E8 3C 02 80 B7 10 BF 45 47 62 3F 01 8E 06 20 "

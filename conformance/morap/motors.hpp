@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string_view>
 
-#include "emulators/morap/eeprom.hpp"
+#include "harness/wire/morap/figures.hpp"
+#include "harness/wire/morap/message.hpp"
 
 namespace armjig::morap::conformance {
 
@@ -17,8 +17,7 @@ struct Tuned {
 
 /// A motor that is known, in the bytes that its nodes say. From docs/spec/morap.md.
 struct Motor {
-  std::string_view name;
-  emulation::Eeprom (*eeprom)(std::uint8_t node);
+  KnownMotor known;
   std::string_view position_set;     ///< stored
   std::string_view speed_set;        ///< stored
   std::string_view one_radian;       ///< the angle behind a calibration to 1 rad

@@ -18,7 +18,8 @@ Outcome<NodeBench::Subject> subject_of(const Target& target) {
   if (!bus) return tl::unexpected{bus.error()};
   if (bus->nodes.empty()) return problem(ErrorCode::kBadValue, target.text, "it needs a node");
   const auto& node = bus->nodes.front();
-  const auto motor = std::ranges::find(motors(), node.motor_maker(), &Motor::eeprom);
+  const auto motor = std::ranges::find(motors(), node.known_motor().name,
+                                       [](const Motor& one) { return one.known.name; });
   return NodeBench::Subject{{node_address(node.id)}, &*motor};
 }
 

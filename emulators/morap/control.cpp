@@ -9,7 +9,7 @@ namespace armjig::morap::emulation {
 namespace {
 
 constexpr float kSupply = 24.0F;
-constexpr float kVoltsPerLevel = 0.046875F;
+constexpr float kClockHz = 1e6F * kClocksPerMicrosecond;
 constexpr float kTwoPi = 6.28318530717958647692F;
 
 /// Sum of filter[i] times the sample i places from the oldest that the filter reaches.

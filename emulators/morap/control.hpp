@@ -16,11 +16,11 @@ namespace armjig::morap::emulation {
 /// The figures and habits by which a node controls its motor. These are the firmware's; a node with
 /// others is a faulty one (defects/).
 struct Law {
-  float voltage_limit = 20.0F;      ///< of the output, V; the power stage could do 24
+  float voltage_limit = kVoltageLimit;
   float rounding = 0.5F;            ///< levels added before the fraction is cut off
   float newest_speed_share = 0.2F;  ///< in the speed that limits the current of a loop
   float older_speed_share = 0.8F;
-  std::uint16_t idle_rate_hz = 200;       ///< also of the voltage and torque modes
+  std::uint16_t idle_rate_hz = kIdleRateHz;
   bool delays_output = true;              ///< of a loop, by one tick
   bool limits_loops = true;               ///< to the rated current
   bool bounds_voltage_above = true;       ///< likewise
@@ -41,7 +41,7 @@ struct Law {
   bool changes_rate = true;               ///< the tick follows the rate of the loop
 };
 
-/// A duty cycle as the node sets it: 0 to 1024, 512 is 0 V, a step 46.875 mV.
+/// A duty cycle as the node sets it: 0 to 1024, 512 is 0 V.
 using Level = std::uint16_t;
 inline constexpr Level kZeroVolts = 512;
 

@@ -5,14 +5,13 @@
 #include <limits>
 
 #include "harness/core/time.hpp"
+#include "harness/wire/morap/figures.hpp"
 
 namespace armjig::morap::emulation {
 
 /// Time as a node counts it: clocks of 62.5 ns since its power-on, which nanoseconds cannot say.
 using Cycles = std::int64_t;
 
-inline constexpr Cycles kCyclesPerMicrosecond = 16;
-inline constexpr float kClockHz = 16e6F;
 inline constexpr Cycles kNever = std::numeric_limits<Cycles>::max() / 128;
 
 /// The last clock that is not after `time`.

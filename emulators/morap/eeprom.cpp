@@ -125,8 +125,7 @@ bool is_usable(const Eeprom& eeprom, const Profile& profile) noexcept {
 }
 
 Eeprom dcx22l(std::uint8_t node) noexcept {
-  return image_of(node, {2.16F, 0.000192F, 0.0229F, 231.20308F, 0.1F, 0.74F, 1.5F, 128.0F},
-                  {2, {-1.5711F, 2.2623F}},
+  return image_of(node, kDcx22l.constants, {2, {-1.5711F, 2.2623F}},
                   {ControllerKind::kSpeed,
                    500,
                    {2, {0.0604F, 0.0604F}},
@@ -136,14 +135,17 @@ Eeprom dcx22l(std::uint8_t node) noexcept {
 }
 
 Eeprom dcx26l(std::uint8_t node) noexcept {
-  return image_of(node, {1.07F, 0.000129F, 0.0214F, 149.0F, 0.05F, 0.75F, 1.5F, 128.0F},
-                  {2, {-1.5937F, 2.0104F}},
+  return image_of(node, kDcx26l.constants, {2, {-1.5937F, 2.0104F}},
                   {ControllerKind::kSpeed,
                    400,
                    {2, {0.0284F, 0.0284F}},
                    {2, {-0.5653F, 0.8839F}},
                    {1, {-0.6251F}},
                    0.2524F});
+}
+
+Eeprom eeprom_of(const KnownMotor& motor, std::uint8_t node) noexcept {
+  return motor.name == kDcx26l.name ? dcx26l(node) : dcx22l(node);
 }
 
 }  // namespace armjig::morap::emulation

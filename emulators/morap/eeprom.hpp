@@ -8,20 +8,9 @@
 
 #include "emulators/morap/profile.hpp"
 #include "harness/wire/morap/controller_set.hpp"
+#include "harness/wire/morap/figures.hpp"
 
 namespace armjig::morap::emulation {
-
-/// Motor and gear as the node believes them to be.
-struct MotorConstants {
-  float resistance{};       ///< ohm, driver included
-  float inductance{};       ///< henry; stored, never used
-  float torque_constant{};  ///< N m / A and V s, at the motor
-  float gear_ratio{};
-  float friction{};  ///< N m s, at the output shaft
-  float efficiency{};
-  float rated_current{};    ///< A
-  float pulses_per_turn{};  ///< of the encoder; four counts each
-};
 
 /// What a node reads from its EEPROM when it starts.
 struct Eeprom {
@@ -54,9 +43,9 @@ using EepromImage = std::array<std::byte, kEepromSize>;
 /// identifier have to be right.
 [[nodiscard]] bool is_usable(const Eeprom& eeprom, const Profile& profile) noexcept;
 
-/// The contents of the two joints that were built: a Maxon DCX22L with gear 231:1, and a DCX26L
-/// with 149:1.
+/// The contents of the two joints that were built, with their controllers.
 [[nodiscard]] Eeprom dcx22l(std::uint8_t node = 2) noexcept;
 [[nodiscard]] Eeprom dcx26l(std::uint8_t node = 1) noexcept;
+[[nodiscard]] Eeprom eeprom_of(const KnownMotor& motor, std::uint8_t node) noexcept;
 
 }  // namespace armjig::morap::emulation

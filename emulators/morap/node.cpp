@@ -10,8 +10,11 @@
 namespace armjig::morap::emulation {
 namespace {
 
-constexpr float kIdlePeriod = 1.0F / 200.0F;  // s; by which voltage and torque modes reckon
-constexpr std::uint16_t kFullScale = 4095;
+constexpr float kIdlePeriod = 1.0F / kIdleRateHz;  // s; by which voltage and torque modes reckon
+// Of the current sense: volts at full scale, and what of the motor's current the bridge sends
+// there.
+constexpr double kFullScaleVolts = 3.3;
+constexpr double kSenseShare = 377e-6;
 
 bool has_count(const ControllerSet& set, auto is_it) noexcept {
   return is_it(set.d.count) || is_it(set.c.count) || is_it(set.f.count);
@@ -266,7 +269,9 @@ float Node::sample_float() noexcept {
     case CommandId::kReadVoltage:
       return volts_of(ram_.drive.level);
     case CommandId::kReadCurrent:
-      return static_cast<float>(convert_current()) * 3.3F / 4095.0F / 820.0F / 0.000377F;
+      return static_cast<float>(convert_current()) * static_cast<float>(kFullScaleVolts) /
+             static_cast<float>(kFullScale) / static_cast<float>(kBelievedShuntOhm) /
+             static_cast<float>(kSenseShare);
     default:
       return angle();
   }
@@ -286,8 +291,9 @@ std::byte Node::status_byte() const noexcept {
 /// What the current sense of the bridge makes of the current through a shunt resistor.
 std::uint16_t Node::convert_current() const noexcept {
   if (!plant_) return conversion_;
-  const double code =
-      std::floor(std::fabs(plant_->current()) * 377e-6 * setup_.shunt_ohm / 3.3 * 4095.0 + 0.5);
+  const double code = std::floor(std::fabs(plant_->current()) * kSenseShare * setup_.shunt_ohm /
+                                     kFullScaleVolts * kFullScale +
+                                 0.5);
   return code < kFullScale ? static_cast<std::uint16_t>(code) : kFullScale;
 }
 

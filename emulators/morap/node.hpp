@@ -36,13 +36,18 @@ struct Drive {
   Level level = kZeroVolts;
 };
 
+/// Of the current sense: the largest code of its converter, and the shunt that the firmware
+/// believes to be there.
+inline constexpr std::uint16_t kFullScale = 4095;
+inline constexpr double kBelievedShuntOhm = 820;
+
 /// Everything that a node is made of.
 struct NodeSetup {
   Eeprom eeprom;
   std::optional<PlantParameters> plant{};  ///< none: the shaft turns only by `turn_encoder`
   Profile profile = kFirmware;
-  double shunt_ohm = 820;   ///< of the current sense; the firmware believes 820
-  Duration tune_stretch{};  ///< how long the clock is held while the tuner computes
+  double shunt_ohm = kBelievedShuntOhm;  ///< that is there
+  Duration tune_stretch{};               ///< how long the clock is held while the tuner computes
   Law law{};
 };
 

@@ -53,7 +53,7 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
     // Of all nodes, and of each in a file.
     {{"motor", "dcx22l|dcx26l", "of nodes; if not given, node 1 has the second, others the first"},
      [](Settings& to, const OptionValue& value) {
-       return value.choose(to.node.motor, {dcx22l, dcx26l});
+       return value.choose(to.node.motor, {&kDcx22l, &kDcx26l});
      }},
     {{"profile", "firmware|documented",
       "the shipped node (the default), or as the document promises"},
@@ -137,7 +137,7 @@ Outcome<void> add(const OptionGroup& group, Settings settings, BusSettings& bus)
 }
 
 DefectiveNode make_node(const NodeSettings& settings) {
-  NodeSetup setup{.eeprom = settings.motor_maker()(settings.id),
+  NodeSetup setup{.eeprom = eeprom_of(settings.known_motor(), settings.id),
                   .profile = settings.profile,
                   .shunt_ohm = settings.shunt};
   auto plant = plant_of(setup.eeprom.motor, settings.inertia, settings.viscous, settings.dry);
@@ -150,9 +150,9 @@ DefectiveNode make_node(const NodeSettings& settings) {
 
 }  // namespace
 
-NodeSettings::MakeMotor NodeSettings::motor_maker() const noexcept {
-  if (motor != nullptr) return motor;
-  return id == 1 ? dcx26l : dcx22l;
+const KnownMotor& NodeSettings::known_motor() const noexcept {
+  if (motor != nullptr) return *motor;
+  return id == 1 ? kDcx26l : kDcx22l;
 }
 
 std::span<const OptionRow> options() noexcept { return std::span{kRows}.first(kOptionCount); }

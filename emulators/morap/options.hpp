@@ -20,21 +20,19 @@ namespace armjig::morap::emulation {
 /// A node. If nothing else is said, its motor carries what the firmware's controllers were designed
 /// for.
 struct NodeSettings {
-  using MakeMotor = Eeprom (*)(std::uint8_t node) noexcept;
-
   std::uint8_t id = 2;
-  MakeMotor motor = nullptr;  ///< none: dcx26l for node 1, dcx22l for others
+  const KnownMotor* motor = nullptr;  ///< none: dcx26l for node 1, dcx22l for others
   Profile profile = kFirmware;
   double inertia = 0.05;  ///< kg m^2
   double viscous = 0.1;   ///< N m s/rad
   double dry = 0.0;       ///< N m
   double load = 0.0;      ///< N m
-  double shunt = 820.0;   ///< ohm
+  double shunt = kBelievedShuntOhm;
   bool has_shaft = true;
   std::vector<std::string> faults;  ///< as `add_fault` reads them
 
   /// The motor that it has, and believes to have if nothing is wrong with it.
-  [[nodiscard]] MakeMotor motor_maker() const noexcept;
+  [[nodiscard]] const KnownMotor& known_motor() const noexcept;
 };
 
 struct BusSettings {

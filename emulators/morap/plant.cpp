@@ -24,7 +24,7 @@ PlantParameters plant_of(const MotorConstants& motor, double inertia, double vis
 
 Plant::Plant(const PlantParameters& p) noexcept
     : step_{p.step},
-      dt_{static_cast<double>(p.step) * 1e-6 / static_cast<double>(kCyclesPerMicrosecond)},
+      dt_{static_cast<double>(p.step) * 1e-6 / static_cast<double>(kClocksPerMicrosecond)},
       back_emf_{p.torque_constant * p.gear_ratio},
       dt_over_inductance_{dt_ / p.inductance},
       current_divisor_{1.0 + dt_over_inductance_ * p.resistance},

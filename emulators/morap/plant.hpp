@@ -11,7 +11,7 @@ namespace armjig::morap::emulation {
 /// A motor with its gear, its encoder and what hangs on the output shaft, SI units. Not what the
 /// node believes (`MotorConstants`) but what is there.
 struct PlantParameters {
-  Cycles step = 50 * kCyclesPerMicrosecond;  ///< positive
+  Cycles step = 50 * kClocksPerMicrosecond;  ///< positive
   double resistance{};                       ///< ohm
   double inductance{};                       ///< henry
   double torque_constant{};                  ///< V s / rad at the motor

@@ -27,10 +27,10 @@ Command command_for(const StepTest& test) {
 }
 
 bool is_speed_test(const StepTest& test) {
-  if (const auto* request = std::get_if<TuneRequest>(&test.controller)) {
-    return request->kind == TuneKind::kPiSpeed;
-  }
-  return std::get<ControllerSet>(test.controller).kind == ControllerKind::kSpeed;
+  const auto* request = std::get_if<TuneRequest>(&test.controller);
+  const auto kind =
+      request != nullptr ? kind_of(request->kind) : std::get<ControllerSet>(test.controller).kind;
+  return kind == ControllerKind::kSpeed;
 }
 
 void evaluate(StepResponse& response, double reference) {

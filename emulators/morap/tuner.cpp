@@ -6,9 +6,6 @@
 namespace armjig::morap::emulation {
 namespace {
 
-constexpr float kLargestInertia = 10.0F;
-constexpr float kFastestPole = -200.0F;
-
 /// What the three designs share.
 struct Design {
   float g0{};  ///< gain of the motor

@@ -61,7 +61,7 @@ class Reader : public WrongKey {
 PlantParameters read_plant(Reader& reader, const Json& json) {
   constexpr std::int64_t kLongestStep = 1'000'000;
   PlantParameters plant;
-  plant.step = reader.integer(json, "dt_us", 1, kLongestStep) * kCyclesPerMicrosecond;
+  plant.step = reader.integer(json, "dt_us", 1, kLongestStep) * kClocksPerMicrosecond;
   plant.resistance = reader.number(json, "R");
   plant.inductance = reader.number(json, "L");
   plant.torque_constant = reader.number(json, "K");
@@ -237,8 +237,8 @@ class Operation {
       node->turn_encoder(event_.time, static_cast<std::int32_t>(
                                           reader_.integer(json_, "delta", INT32_MIN, INT32_MAX)));
     } else if (event_.dir == "adc") {
-      node->set_conversion(event_.time,
-                           static_cast<std::uint16_t>(reader_.integer(json_, "value", 0, 4095)));
+      node->set_conversion(
+          event_.time, static_cast<std::uint16_t>(reader_.integer(json_, "value", 0, kFullScale)));
     } else if (event_.dir == "restart") {
       node->restart(event_.time);
     } else {

@@ -36,18 +36,6 @@ enum class Drive : std::uint8_t {
   kMoves,
 };
 
-bool is_node(BusAddress address) noexcept {
-  return (address.value & 0xF0U) == kNodeBaseAddress;  // a node's identifier is in the lower half
-}
-
-bool is_reference(CommandId id) noexcept {
-  return id >= CommandId::kPosition && id <= CommandId::kTorque;
-}
-
-bool is_calibration(CommandId id) noexcept {
-  return id == CommandId::kCalibrateZero || id == CommandId::kCalibrateAngle;
-}
-
 bool has_zero_count(const ControllerSet& set) noexcept {
   return set.d.count == 0 || set.c.count == 0 || set.f.count == 0;
 }
@@ -74,7 +62,7 @@ using Drives = std::array<Drive, kAddresses>;
 /// What a message means for the node that has all of it.
 void follow(Drives& drives, const BusMessage& message) noexcept {
   if (message.access == Access::kRead || message.write.empty()) return;
-  if (!is_node(message.address)) return;
+  if (!is_node_address(message.address.value)) return;
   const auto decoded = decode_command(message.write);
   const auto* found = std::get_if<DecodedCommand>(&decoded);
   if (found == nullptr) return;
@@ -132,7 +120,8 @@ class NodeJudge final : public Judge {
                                               const Permissions& permissions) {
     if (message.address.value == pen::kAddress) return judge_pen(message, permissions);
     if (message.access == Access::kRead || message.write.empty()) return std::nullopt;
-    if (!is_node(message.address)) return demand(Hazard::kState, permissions, "an unknown device");
+    if (!is_node_address(message.address.value))
+      return demand(Hazard::kState, permissions, "an unknown device");
     return judge_write(message.write, drives[message.address.value], permissions);
   }
 
@@ -174,9 +163,7 @@ class NodeJudge final : public Judge {
   static std::optional<Refusal> judge_command(CommandId id, Drive drive,
                                               const Permissions& permissions) {
     if (is_reference(id)) return demand(Hazard::kMove, permissions, "a reference");
-    const bool changes_loop = is_calibration(id) || id == CommandId::kProgram ||
-                              id == CommandId::kDefaultControllers || id == CommandId::kTune;
-    if (!changes_loop) return std::nullopt;
+    if (!is_calibration(id) && !is_programming(id)) return std::nullopt;
     if (drive == Drive::kStands) {
       const auto hazard = is_calibration(id) ? Hazard::kState : Hazard::kProgram;
       return demand(hazard, permissions, find_command(id)->name);

@@ -25,8 +25,8 @@ void run_nodes(benchmark::State& state, std::uint8_t count) {
   Instant time{};
   for (std::uint8_t id = 0; id < count; ++id) {
     const auto eeprom = emulation::dcx26l(id);
-    bus.attach(
-        emulation::Node{{.eeprom = eeprom, .plant = plant_of(eeprom.motor, 0.05, 0.041, 0.072)}});
+    bus.attach(emulation::Node{
+        {.eeprom = eeprom, .plant = emulation::plant_of(eeprom.motor, 0.05, 0.041, 0.072)}});
     time = write(bus, time, node_address(id), encode(Command{CommandId::kCalibrateZero}));
   }
   bool is_forward = false;

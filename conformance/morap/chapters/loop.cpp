@@ -71,7 +71,7 @@ constexpr Clause kClauses[] = {
          "vector 64; recording static-position-locked", Profiles::kFirmware),
     loop("Tick by tick.",
          [](NodeBench& node) {
-           if (node.motor().name == "dcx22l") {
+           if (node.motor().known.name == "dcx22l") {
              stored(node, kPosition, 1.0F, 625, {15, 29, 43, 57, 69});
            } else {
              stored(node, kPosition, 1.0F, 625, {9, 18, 26, 34, 34});
@@ -83,7 +83,7 @@ constexpr Clause kClauses[] = {
          "vector 65; recording static-speed-locked", Profiles::kFirmware),
     loop("Tick by tick.",
          [](NodeBench& node) {
-           if (node.motor().name == "dcx22l") {
+           if (node.motor().known.name == "dcx22l") {
              stored(node, kSpeed, 0.2F, 500, {5, 8, 12, 14});
            } else {
              stored(node, kSpeed, 0.2F, 400, {2, 4, 6, 7});
@@ -207,7 +207,7 @@ constexpr Clause kClauses[] = {
            node.tick();
            node.turn(67);
            node.tick();
-           if (node.motor().name == "dcx22l") {
+           if (node.motor().known.name == "dcx22l") {
              node.expect_levels_at_ticks({85, 82, 79, 77});
            } else {
              node.expect_levels_at_ticks({49, 46, 44, 42});

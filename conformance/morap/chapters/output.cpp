@@ -55,12 +55,12 @@ void expect_direct(NodeBench& node, float volts, int levels) {
 
 /// The levels for a current in amperes at standstill.
 int levels_of_current(const Motor& motor, double amperes) {
-  const auto resistance = static_cast<double>(motor.eeprom(0).motor.resistance);
+  const auto resistance = static_cast<double>(motor.known.constants.resistance);
   return static_cast<int>(std::lround(amperes * resistance * 1024 / 48));
 }
 
 double torque_constant(const Motor& motor) {
-  const auto constants = motor.eeprom(0).motor;
+  const auto constants = motor.known.constants;
   return static_cast<double>(constants.efficiency) *
          static_cast<double>(constants.torque_constant) * static_cast<double>(constants.gear_ratio);
 }
@@ -287,7 +287,7 @@ constexpr Clause kClauses[] = {
             node.turn(100);
             node.tick();
             // K n times 100 counts in 5 ms.
-            const auto constants = node.motor().eeprom(0).motor;
+            const auto constants = node.motor().known.constants;
             const double counts_per_turn = 4.0 * static_cast<double>(constants.pulses_per_turn);
             const double volts = static_cast<double>(constants.torque_constant) * 100 * 2 *
                                  3.14159265358979 / counts_per_turn / 0.005;

@@ -43,11 +43,6 @@ void stays_enabled(NodeBench& node, Send send) {
   node.send(kDisable);
 }
 
-constexpr bool is_undefined(int id) {
-  return id == 6 || (id >= 8 && id <= 13) || (id >= 18 && id <= 30) || (id >= 35 && id <= 127) ||
-         id == 135 || id == 137 || (id >= 140 && id <= 251) || id == 255;
-}
-
 template <CommandId id>
 void does_nothing(NodeBench& node) {
   node.send(kVoltage, 0.0F);
@@ -322,7 +317,7 @@ constexpr Clause kClauses[] = {
           node.send(kVoltage, 0.0F);
           node.send(kReadMotorStatus);
           for (int id = 0; id < 256; ++id) {
-            if (!is_undefined(id)) continue;
+            if (is_known(CommandId{static_cast<std::uint8_t>(id)})) continue;
             node.about(fmt::format("behind identifier {}", id));
             node.send_bytes(std::vector{static_cast<std::byte>(id)});
             node.expect_read_on("01");

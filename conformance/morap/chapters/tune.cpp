@@ -10,8 +10,6 @@ using enum ProgrammingStatus;
 
 using enum TuneKind;
 
-CommandId selector_of(TuneKind kind) { return kind == kPiSpeed ? kReadSpeedSet : kReadPositionSet; }
-
 template <TuneKind kind>
 void tuned(NodeBench& node) {
   for (const auto& [request, set] : node.motor().tuned) {
@@ -19,7 +17,7 @@ void tuned(NodeBench& node) {
     node.about(fmt::format("inertia {}, pole {}", request.inertia, request.pole));
     node.tune(request.kind, request.inertia, request.pole);
     node.settle();
-    node.expect_bytes(selector_of(kind), set);
+    node.expect_bytes(selector_of(kind_of(kind)), set);
   }
 }
 
@@ -27,14 +25,14 @@ void expect_rate(NodeBench& node, TuneKind kind, float inertia, int rate_hz) {
   node.about(fmt::format("inertia {}", inertia));
   node.tune(kind, inertia, -9.0F);
   node.settle();
-  const auto bytes = node.read(selector_of(kind), 3);
+  const auto bytes = node.read(selector_of(kind_of(kind)), 3);
   const int actual = load_u16_le(slice<2>(Bytes{bytes}, 1));
   node.expect_true(actual == rate_hz, fmt::format("{} Hz", rate_hz), fmt::format("{} Hz", actual));
 }
 
 /// The inertia with which the motor's own pole is at `-pole`.
 float inertia_of(const Motor& motor, double pole) {
-  const auto m = motor.eeprom(0).motor;
+  const auto m = motor.known.constants;
   const auto constant = static_cast<double>(m.torque_constant) * static_cast<double>(m.gear_ratio);
   const auto resistance = static_cast<double>(m.resistance);
   const auto damping = static_cast<double>(m.efficiency) * constant * constant +

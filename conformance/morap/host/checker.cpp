@@ -11,29 +11,14 @@
 
 #include "conformance/morap/host/occasions.hpp"
 #include "harness/core/hex.hpp"
+#include "harness/wire/morap/figures.hpp"
 #include "harness/wire/morap/message.hpp"
 #include "harness/wire/morap/pen.hpp"
 
 namespace armjig::morap::programs {
 namespace {
 
-using namespace std::chrono_literals;
 using enum CommandId;
-
-constexpr Duration kProgramPause = 10ms;
-constexpr Duration kPenPause = 25ms;
-constexpr float kMostVolts = 20.0F;
-constexpr std::uint16_t kMostRate = 1500;
-
-bool is_reference(CommandId id) noexcept { return id >= kPosition && id <= kTorque; }
-bool is_calibration(CommandId id) noexcept { return id == kCalibrateZero || id == kCalibrateAngle; }
-bool is_programming(CommandId id) noexcept {
-  return id == kProgram || id == kDefaultControllers || id == kTune;
-}
-bool has_number(CommandId id) noexcept {
-  const auto* info = find_command(id);
-  return info != nullptr && info->payload == Payload::kFloat;
-}
 
 /// What a master has told one node.
 struct Told {
@@ -56,7 +41,7 @@ class HostChecker final : public ProgramChecker {
     if (data.empty()) return;  // a poke
     ++messages_;
     if (address == pen::kAddress) return judge_pen(data);
-    if (address < kNodeBaseAddress || address >= 2 * kNodeBaseAddress) return;  // somebody else
+    if (!is_node_address(address)) return;  // somebody else
     if (address > node_address(kLastDocumentedNode)) {
       complain("addresses", fmt::format("address {:02X}", address));
     }
@@ -148,7 +133,7 @@ class HostChecker final : public ProgramChecker {
     if (!std::isfinite(number)) return complain("finite", fmt::format("{}", number));
     if (id == kDirectVoltage) complain("no-direct-voltage", fmt::format("{} V", number));
     const bool is_voltage = id == kVoltage || id == kDirectVoltage;
-    if (is_voltage && std::fabs(number) > kMostVolts) {
+    if (is_voltage && std::fabs(number) > kVoltageLimit) {
       complain("voltage", fmt::format("{} V", number));
     }
   }
@@ -157,7 +142,7 @@ class HostChecker final : public ProgramChecker {
     if (set.kind > ControllerKind::kSpeed) {
       complain("kind", fmt::format("kind {}", static_cast<int>(set.kind)));
     }
-    if (set.rate_hz == 0 || set.rate_hz > kMostRate) {
+    if (set.rate_hz == 0 || set.rate_hz > kHighestRateHz) {
       complain("rate", fmt::format("{} Hz", set.rate_hz));
     }
     bool are_numbers = std::isfinite(set.integral);
@@ -174,10 +159,10 @@ class HostChecker final : public ProgramChecker {
     if (request.kind > TuneKind::kPiSpeed) {
       complain("tune-kind", fmt::format("kind {}", static_cast<int>(request.kind)));
     }
-    if (!(request.inertia > 0.0F && request.inertia <= 10.0F)) {
+    if (!(request.inertia > 0.0F && request.inertia <= kLargestInertia)) {
       complain("tune-inertia", fmt::format("{}", request.inertia));
     }
-    if (!(request.pole >= -200.0F && request.pole < 0.0F)) {
+    if (!(request.pole >= kFastestPole && request.pole < 0.0F)) {
       complain("tune-pole", fmt::format("{}", request.pole));
     }
   }
@@ -208,7 +193,7 @@ class HostChecker final : public ProgramChecker {
   void judge_pause(Told& told, CommandId id) {
     complain_.occasion(occasion::kProgram);
     if (told.programmed) complain_.occasion(occasion::kTwoPrograms);
-    if (told.programmed && now_ - *told.programmed + noise_ < kProgramPause) {
+    if (told.programmed && now_ - *told.programmed + noise_ < kProgrammingPause) {
       complain("program-pause", fmt::format("{:.1f} ms", milliseconds(now_ - *told.programmed)));
     }
     told.programmed = now_;
@@ -244,7 +229,7 @@ class HostChecker final : public ProgramChecker {
       complain("pen-commands", to_hex_dump(data.first(1)));
     }
     if (data.size() > (has_position ? 2U : 1U)) complain("pen-surplus", to_hex_dump(data));
-    if (pen_ && now_ - *pen_ + noise_ < kPenPause) {
+    if (pen_ && now_ - *pen_ + noise_ < pen::kPause) {
       complain("pen-pause", fmt::format("{:.1f} ms", milliseconds(now_ - *pen_)));
     }
     pen_ = now_;

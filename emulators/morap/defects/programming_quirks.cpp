@@ -133,7 +133,7 @@ bool is_programming(const Words& command) noexcept {
   return is(command, kProgram) || is(command, kTune);
 }
 constexpr Change kPadded = [](Words& command, QuirkMemory&, const Node&) {
-  if (has_float(id_of(command))) command.resize(kFloatCommandSize);
+  if (has_number(id_of(command))) command.resize(kFloatCommandSize);
 };
 constexpr Change kTunesEarly = [](Words& command, QuirkMemory&, const Node&) {
   if (is(command, kTune) && command.size() == kTuneCommandSize - 1) command.push_back({});
@@ -155,13 +155,13 @@ constexpr Change kForgetsPieces = [](Words&, QuirkMemory& memory, const Node&) {
   memory.bytes.clear();
 };
 constexpr Change kModeAtId = [](Words& command, QuirkMemory& memory, const Node&) {
-  if (!has_float(id_of(command)) || is(command, kCalibrateAngle)) return;
+  if (!is_reference(id_of(command))) return;
   memory.bytes.resize(kFloatCommandSize);
   memory.bytes[0] = command[0];
   command = memory.bytes;
 };
 constexpr Change kRemembersFloat = [](Words& command, QuirkMemory& memory, const Node&) {
-  if (has_float(id_of(command))) memory.bytes = command;
+  if (has_number(id_of(command))) memory.bytes = command;
 };
 constexpr Change kCutForgets = [](Words& command, QuirkMemory& memory, const Node&) {
   if (is_programming(command)) memory.count = 1;
@@ -225,7 +225,7 @@ constexpr EditTuning kAnyKind = [](std::byte& kind, float&, float&) {
   if (kind > std::byte{2}) kind = std::byte{0};
 };
 constexpr EditTuning kHeavy = [](std::byte&, float& inertia, float&) {
-  inertia = std::min(inertia, 10.0F);
+  inertia = std::min(inertia, kLargestInertia);
 };
 constexpr EditTuning kNegativeInertia = [](std::byte&, float& inertia, float&) {
   inertia = std::fabs(inertia);
@@ -234,13 +234,13 @@ constexpr EditTuning kPositivePole = [](std::byte&, float&, float& pole) {
   pole = -std::fabs(pole);
 };
 constexpr EditTuning kFastPole = [](std::byte&, float&, float& pole) {
-  pole = std::max(pole, -200.0F);
+  pole = std::max(pole, kFastestPole);
 };
 constexpr EditTuning kRefusesTen = [](std::byte& kind, float& inertia, float&) {
-  if (inertia >= 10.0F) kind = kNoKind;
+  if (inertia >= kLargestInertia) kind = kNoKind;
 };
 constexpr EditTuning kRefuses200 = [](std::byte& kind, float&, float& pole) {
-  if (pole <= -200.0F) kind = kNoKind;
+  if (pole <= kFastestPole) kind = kNoKind;
 };
 constexpr EditTuning kRefusesZeroPole = [](std::byte& kind, float&, float& pole) {
   if (pole == 0.0F) kind = kNoKind;

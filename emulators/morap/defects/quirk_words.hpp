@@ -23,13 +23,6 @@ inline CommandId id_of(const Words& command) noexcept {
 inline bool is(const Words& command, CommandId id) noexcept {
   return !command.empty() && id_of(command) == id;
 }
-inline bool is_known(CommandId id) noexcept {
-  return find_command(id) != nullptr || find_reading(id) != nullptr;
-}
-inline bool has_float(CommandId id) noexcept {
-  const auto* info = find_command(id);
-  return info != nullptr && info->payload == Payload::kFloat;
-}
 inline void become(Words& command, CommandId id) { command.assign(1, static_cast<std::byte>(id)); }
 
 /// Makes a message that is refused at its third byte, or whatever else is left of a command.

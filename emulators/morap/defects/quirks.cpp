@@ -78,12 +78,12 @@ constexpr Change kBoundsReference = [](Words& command, QuirkMemory&, const Node&
   if (!(std::fabs(value) <= 100.0F)) set_float(command, 1, 100.0F);
 };
 constexpr Change kQuietsNan = [](Words& command, QuirkMemory&, const Node&) {
-  if (!has_float(id_of(command)) || !std::isnan(float_at(command, 1))) return;
+  if (!has_number(id_of(command)) || !std::isnan(float_at(command, 1))) return;
   command[3] |= std::byte{0x40};
 };
 constexpr Change kRefusesUncalibrated = [](Words& command, QuirkMemory&, const Node& node) {
-  const bool is_reference = has_float(id_of(command)) && !is(command, kCalibrateAngle);
-  if (is_reference && node.status() == MotorStatus::kNeedsCalibration) command.clear();
+  if (is_reference(id_of(command)) && node.status() == MotorStatus::kNeedsCalibration)
+    command.clear();
 };
 
 // Answers.

@@ -20,8 +20,6 @@ using namespace drive;
 
 namespace {
 
-int node_of(BusAddress address) { return address.value - kNodeBaseAddress; }
-
 class Console final : public DeviceConsole {
  public:
   Console(Rig<BusPort> rig, const std::string& target, Say say)
@@ -30,7 +28,9 @@ class Console final : public DeviceConsole {
         master_{rig_.port()},
         joint_{master_, {node_address(2)}} {}
 
-  std::string occupation() override { return fmt::format("node {}", node_of(joint_.address())); }
+  std::string occupation() override {
+    return fmt::format("node {}", node_of(joint_.address().value));
+  }
   Instant now() override { return master_.now(); }
 
  private:
@@ -98,7 +98,7 @@ void Console::stand() {
   if (moved_.empty()) return say(Tone::kAnswer, "nothing moves");
   for (const auto address : std::exchange(moved_, {})) {
     const bool is_disabled = Joint{master_, address}.disable() == BusCode::kOk;
-    const auto node = node_of(address);
+    const auto node = node_of(address.value);
     say(is_disabled ? Tone::kAnswer : Tone::kFailed,
         is_disabled ? fmt::format("node {} is disabled", node)
                     : fmt::format("node {} cannot be disabled: it may be moving", node));

@@ -54,9 +54,8 @@ NodeView look_at(Master& master, BusAddress address) {
 }
 
 ScanResult find_nodes(Master& master) {
-  constexpr std::uint8_t kLast = 0x1F;
   ScanResult found;
-  for (auto address = kNodeBaseAddress; address <= kLast; ++address) {
+  for (auto address = kNodeBaseAddress; is_node_address(address); ++address) {
     if (address == pen::kAddress) continue;
     const auto code = master.poke({address});
     if (code == BusCode::kOk) found.addresses.push_back({address});
@@ -68,7 +67,7 @@ ScanResult find_nodes(Master& master) {
 }
 
 std::string to_line(const NodeView& node) {
-  const int id = node.address.value - kNodeBaseAddress;
+  const int id = node_of(node.address.value);
   if (node.code != BusCode::kOk) return fmt::format("{:>4}  {}", id, describe(node.code));
   const auto radians = static_cast<double>(node.angle.value);
   return fmt::format("{:>4}  {:<17} {:>11.5f} rad {:>10.3f} deg {:>9.4f} V {:>7.3f} A", id,
@@ -86,7 +85,7 @@ std::string table(std::span<const NodeView> nodes) {
 std::string to_json(const NodeView& node, double seconds) {
   nlohmann::ordered_json json{{"schema", "armjig.morap-node/1"},
                               {"time_s", seconds},
-                              {"node", node.address.value - kNodeBaseAddress}};
+                              {"node", node_of(node.address.value)}};
   if (node.code != BusCode::kOk) {
     json["error"] = describe(node.code);
     return json.dump();

@@ -5,16 +5,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "harness/wire/morap/figures.hpp"
+
 namespace armjig::morap::drive {
-namespace {
-
-constexpr std::uint16_t kHighestRate = 1500;  // Hz; beyond it a node has no time left
-
-ControllerKind kind_of(TuneKind kind) noexcept {
-  return kind == TuneKind::kPiSpeed ? ControllerKind::kSpeed : ControllerKind::kPosition;
-}
-
-}  // namespace
 
 bool is_safe(const ControllerSet& set) noexcept {
   const auto is_sound = [](const Coefficients& filter) {
@@ -24,7 +17,7 @@ bool is_safe(const ControllerSet& set) noexcept {
                        [](float value) { return std::isfinite(value); });
   };
   return is_sound(set.d) && is_sound(set.c) && is_sound(set.f) && std::isfinite(set.integral) &&
-         set.rate_hz >= 1 && set.rate_hz <= kHighestRate;
+         set.rate_hz >= 1 && set.rate_hz <= kHighestRateHz;
 }
 
 std::string_view describe(ProgramOutcome outcome) noexcept {
@@ -54,10 +47,10 @@ std::optional<TuneKind> tune_kind(std::string_view name) noexcept {
 }
 
 std::string refusal_of(const TuneRequest& request) {
-  if (!(request.inertia > 0.0F && request.inertia <= 10.0F)) {
+  if (!(request.inertia > 0.0F && request.inertia <= kLargestInertia)) {
     return "the inertia has to be above 0 and at most 10 kg m^2";
   }
-  if (!(request.pole < 0.0F && request.pole >= -200.0F)) {
+  if (!(request.pole < 0.0F && request.pole >= kFastestPole)) {
     return "the pole has to be below 0 and at least -200 1/s";
   }
   return {};
@@ -71,10 +64,8 @@ BusCode Joint::read(CommandId selector, std::span<std::byte> out) {
 }
 
 Reading<SetBytes> Joint::controller_set(ControllerKind kind) {
-  const auto selector =
-      kind == ControllerKind::kPosition ? CommandId::kReadPositionSet : CommandId::kReadSpeedSet;
   std::array<std::byte, kLargestSetSize> bytes{};
-  Reading<SetBytes> reading{read(selector, bytes), {}};
+  Reading<SetBytes> reading{read(selector_of(kind), bytes), {}};
   if (reading.code != BusCode::kOk) return reading;
   ControllerSet set;
   if (decode_into(set, bytes)) return reading;  // no set at all; or a tick fell between two bytes
@@ -101,7 +92,7 @@ ProgramResult Joint::tune(const TuneRequest& request) {
 ProgramResult Joint::program_verified(const Command& command, ControllerKind kind) {
   const auto failed = [](BusCode code) { return ProgramResult{ProgramOutcome::kBusFailed, code}; };
   if (const auto code = load_default_controllers(); code != BusCode::kOk) return failed(code);
-  master_->wait(kSettling);
+  master_->wait(kProgrammingPause);
   const auto before = programming_status();
   if (before.code != BusCode::kOk) return failed(before.code);
   if (before.value != ProgrammingStatus::kNothing) return {ProgramOutcome::kNotReset};
@@ -109,7 +100,7 @@ ProgramResult Joint::program_verified(const Command& command, ControllerKind kin
   const auto after = programming_status();
   if (after.code != BusCode::kOk) return failed(after.code);
   if (after.value != ProgrammingStatus::kSuccess) return {ProgramOutcome::kRefused};
-  master_->wait(kSettling);
+  master_->wait(kProgrammingPause);
   const auto shown = controller_set(kind);
   if (shown.code != BusCode::kOk) return failed(shown.code);
   ProgramResult result{ProgramOutcome::kDone, BusCode::kOk, {}};

@@ -60,10 +60,6 @@ struct ProgramResult {
 /// twice.
 class Joint {
  public:
-  /// Time for a tick to pass, between a message and what depends on it: longer than the slowest
-  /// control period in use. Rates under 200 Hz need more.
-  static constexpr Duration kSettling = std::chrono::milliseconds{10};
-
   /// The master outlives the joint.
   Joint(Master& master, BusAddress address) noexcept : master_{&master}, address_{address} {}
 
@@ -139,7 +135,8 @@ class Joint {
   BusAddress address_;
 };
 
-/// The pen. It needs 25 ms between commands, and hangs on bytes that a command does not need.
+/// The pen. It needs `pen::kPause` between commands, and hangs on bytes that a command does not
+/// need.
 class PenDrive {
  public:
   explicit PenDrive(Master& master) noexcept : master_{&master} {}

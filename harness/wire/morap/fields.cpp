@@ -14,35 +14,6 @@ namespace {
 
 using enum Encoding;
 
-/// The names of all identifiers, as `command` shows them.
-constexpr std::array<NamedValue, 28> kIdNames{{{0, "disable"},
-                                               {1, "position"},
-                                               {2, "speed"},
-                                               {3, "voltage"},
-                                               {4, "direct_voltage"},
-                                               {5, "torque"},
-                                               {7, "trajectory"},
-                                               {14, "brake_14"},
-                                               {15, "brake_15"},
-                                               {16, "calibrate_zero"},
-                                               {17, "calibrate_angle"},
-                                               {31, "calibration_unknown"},
-                                               {32, "program"},
-                                               {33, "default_controllers"},
-                                               {34, "tune"},
-                                               {128, "read_angle"},
-                                               {129, "read_position_reference"},
-                                               {130, "read_speed_reference"},
-                                               {131, "read_motor_status"},
-                                               {132, "read_programming_status"},
-                                               {133, "read_applied_voltage"},
-                                               {134, "read_current"},
-                                               {136, "read_own_address"},
-                                               {138, "read_position_set"},
-                                               {139, "read_speed_set"},
-                                               {252, "led_on"},
-                                               {253, "led_off"},
-                                               {254, "led_toggle"}}};
 constexpr std::array<NamedValue, 3> kPenNames{{{1, "deploy"}, {2, "retract"}, {7, "set_position"}}};
 constexpr std::array<NamedValue, 2> kKinds{{{0, "position"}, {1, "speed"}}};
 constexpr std::array<NamedValue, 3> kTuneKinds{
@@ -53,7 +24,7 @@ constexpr std::array<NamedValue, 3> kProgrammingStatuses{
     {{1, "nothing"}, {2, "success"}, {3, "failure"}}};
 
 constexpr Field kBusAddress{"bus", 0, 1, kUnsigned, "", "address times two; plus one for a read"};
-constexpr Field kCommand{"command", 1, 1, kCode, "", "what to do", {}, kIdNames};
+constexpr Field kCommand{"command", 1, 1, kCode, "", "what to do", {}, kIdentifierNames};
 
 constexpr std::array kPokeFields{kBusAddress};
 constexpr std::array kCommandFields{kBusAddress, kCommand};

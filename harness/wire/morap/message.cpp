@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/wire/morap/message.hpp"
 
-#include <array>
+#include <algorithm>
 #include <optional>
 
 namespace armjig::morap {
@@ -35,19 +35,26 @@ constexpr std::array kCommands{
     CommandInfo{kLedToggle, "led_toggle", Payload::kNone, "", "does nothing", false},
 };
 
+/// Called as it is chosen, without the word in front.
+constexpr ReadInfo reading(CommandId selector, std::string_view name, ReadKind kind,
+                           std::string_view unit, std::string_view meaning,
+                           bool is_documented = true) {
+  return {selector, name, name.substr(name.find('_') + 1), kind, unit, meaning, is_documented};
+}
+
 constexpr std::array kReadings{
-    ReadInfo{kReadAngle, "angle", ReadKind::kFloat, "rad", "of the output shaft", true},
-    ReadInfo{kReadPositionReference, "position_reference", ReadKind::kFloat, "rad",
-             "as last written", true},
-    ReadInfo{kReadSpeedReference, "speed_reference", ReadKind::kFloat, "rad/s", "as last written",
-             true},
-    ReadInfo{kReadMotorStatus, "motor_status", ReadKind::kByte, "", "", true},
-    ReadInfo{kReadProgrammingStatus, "programming_status", ReadKind::kByte, "", "", true},
-    ReadInfo{kReadVoltage, "applied_voltage", ReadKind::kFloat, "V", "after all limits", true},
-    ReadInfo{kReadCurrent, "current", ReadKind::kFloat, "A", "magnitude", true},
-    ReadInfo{kReadAddress, "own_address", ReadKind::kByte, "", "seven bits", true},
-    ReadInfo{kReadPositionSet, "position_set", ReadKind::kControllerSet, "", "active", false},
-    ReadInfo{kReadSpeedSet, "speed_set", ReadKind::kControllerSet, "", "active", false},
+    reading(kReadAngle, "read_angle", ReadKind::kFloat, "rad", "of the output shaft"),
+    reading(kReadPositionReference, "read_position_reference", ReadKind::kFloat, "rad",
+            "as last written"),
+    reading(kReadSpeedReference, "read_speed_reference", ReadKind::kFloat, "rad/s",
+            "as last written"),
+    reading(kReadMotorStatus, "read_motor_status", ReadKind::kByte, "", ""),
+    reading(kReadProgrammingStatus, "read_programming_status", ReadKind::kByte, "", ""),
+    reading(kReadVoltage, "read_applied_voltage", ReadKind::kFloat, "V", "after all limits"),
+    reading(kReadCurrent, "read_current", ReadKind::kFloat, "A", "magnitude"),
+    reading(kReadAddress, "read_own_address", ReadKind::kByte, "", "seven bits"),
+    reading(kReadPositionSet, "read_position_set", ReadKind::kControllerSet, "", "active", false),
+    reading(kReadSpeedSet, "read_speed_set", ReadKind::kControllerSet, "", "active", false),
 };
 
 constexpr std::uint8_t kNowhere = 0xFF;
@@ -130,6 +137,17 @@ struct PayloadWriter {
 };
 
 }  // namespace
+
+constinit const std::array<NamedValue, kIdentifierCount> kIdentifierNames = [] {
+  std::array<NamedValue, kIdentifierCount> names{};
+  auto out = names.begin();
+  for (const auto& info : kCommands) *out++ = {static_cast<std::int64_t>(info.id), info.name};
+  for (const auto& info : kReadings) {
+    *out++ = {static_cast<std::int64_t>(info.selector), info.selector_name};
+  }
+  std::ranges::sort(names, {}, &NamedValue::value);
+  return names;
+}();
 
 std::span<const CommandInfo> commands() noexcept { return kCommands; }
 std::span<const ReadInfo> readings() noexcept { return kReadings; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -8,6 +9,7 @@
 #include <variant>
 
 #include "harness/core/bytes.hpp"
+#include "harness/wire/field.hpp"
 #include "harness/wire/morap/controller_set.hpp"
 
 /// What a master writes to a MORAP motor node and what it reads from it. A write begins with an
@@ -67,6 +69,7 @@ enum class ReadKind : std::uint8_t { kFloat, kByte, kControllerSet };
 
 struct ReadInfo {
   CommandId selector{};
+  std::string_view selector_name;
   std::string_view name;
   ReadKind kind{};
   std::string_view unit;
@@ -80,6 +83,29 @@ struct ReadInfo {
 /// nullptr if there is none.
 [[nodiscard]] const CommandInfo* find_command(CommandId id) noexcept;
 [[nodiscard]] const ReadInfo* find_reading(CommandId selector) noexcept;
+
+/// The names of all identifiers, those of readings with `read_` before them.
+inline constexpr std::size_t kIdentifierCount = 28;
+extern const std::array<NamedValue, kIdentifierCount> kIdentifierNames;
+
+// Sorts of identifiers.
+[[nodiscard]] inline bool is_known(CommandId id) noexcept {
+  return find_command(id) != nullptr || find_reading(id) != nullptr;
+}
+[[nodiscard]] constexpr bool is_reference(CommandId id) noexcept {
+  return id >= CommandId::kPosition && id <= CommandId::kTorque;
+}
+[[nodiscard]] constexpr bool is_calibration(CommandId id) noexcept {
+  return id == CommandId::kCalibrateZero || id == CommandId::kCalibrateAngle;
+}
+/// Those that change parameters.
+[[nodiscard]] constexpr bool is_programming(CommandId id) noexcept {
+  return id >= CommandId::kProgram && id <= CommandId::kTune;
+}
+/// Whether a number follows it.
+[[nodiscard]] constexpr bool has_number(CommandId id) noexcept {
+  return is_reference(id) || id == CommandId::kCalibrateAngle;
+}
 
 /// Answer to `kReadMotorStatus`.
 enum class MotorStatus : std::uint8_t { kEnabled = 1, kDisabled = 2, kNeedsCalibration = 3 };
@@ -96,6 +122,15 @@ struct TuneRequest {
   float inertia{};  ///< kg m^2 at the output shaft
   float pole{};     ///< of the closed loop, 1/s, negative
 };
+
+/// Which controller a request is about.
+[[nodiscard]] constexpr ControllerKind kind_of(TuneKind kind) noexcept {
+  return kind == TuneKind::kPiSpeed ? ControllerKind::kSpeed : ControllerKind::kPosition;
+}
+/// How it is read back.
+[[nodiscard]] constexpr CommandId selector_of(ControllerKind kind) noexcept {
+  return kind == ControllerKind::kSpeed ? CommandId::kReadSpeedSet : CommandId::kReadPositionSet;
+}
 
 /// One write. Floats are bit-exact. The payload is the one that the identifier asks for.
 struct Command {
@@ -148,6 +183,13 @@ inline constexpr std::uint8_t kLastNode = 16;
 /// The seven-bit address of a node. 16 is 0 again.
 [[nodiscard]] constexpr std::uint8_t node_address(std::uint8_t node) noexcept {
   return static_cast<std::uint8_t>(kNodeBaseAddress | node);
+}
+/// The other way round; 16 or more if the address is not that of a node.
+[[nodiscard]] constexpr std::uint8_t node_of(std::uint8_t address) noexcept {
+  return static_cast<std::uint8_t>(address ^ kNodeBaseAddress);
+}
+[[nodiscard]] constexpr bool is_node_address(std::uint8_t address) noexcept {
+  return node_of(address) < kLastNode;
 }
 
 }  // namespace armjig::morap

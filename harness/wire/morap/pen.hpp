@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 
 #include "harness/core/bytes.hpp"
+#include "harness/core/time.hpp"
 
 /// The pen end-effector: an Arduino-style board with a servo, on the same bus as the motor nodes.
 /// There is nothing to read from it. Source: docs/spec/morap.md, section Pen.
@@ -14,6 +16,9 @@ inline constexpr std::uint8_t kAddress = 0x19;
 
 /// The first byte of a write. Its numbers mean something else to motor nodes.
 enum class CommandId : std::uint8_t { kDeploy = 1, kRetract = 2, kSetPosition = 7 };
+
+/// That it needs between two commands.
+inline constexpr Duration kPause = std::chrono::milliseconds{25};
 
 inline constexpr int kDeployedDegrees = 8;
 inline constexpr int kRetractedDegrees = 45;

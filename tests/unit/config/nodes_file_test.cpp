@@ -30,7 +30,7 @@ TEST(NodesFile, HasAllThatIsOnTheBus) {
   ASSERT_TRUE(bus) << describe(bus.error());
   ASSERT_EQ(bus->nodes.size(), 2U);
   EXPECT_EQ(bus->nodes[0].id, 3);
-  EXPECT_EQ(bus->nodes[0].motor, dcx26l);
+  EXPECT_EQ(bus->nodes[0].motor, &kDcx26l);
   EXPECT_EQ(bus->nodes[0].inertia, 0.1);
   EXPECT_EQ(bus->nodes[0].load, -0.5);
   EXPECT_FALSE(bus->nodes[0].profile.has_undocumented);

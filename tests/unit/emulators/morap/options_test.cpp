@@ -58,8 +58,8 @@ TEST(MorapOptions, HoldForAllNodesWithFaultsAndLoads) {
   EXPECT_EQ(make(given, "emulated:").error().where, "emulated:, fault=quirk:none");
   auto bus = read_bus({{"nodes", "1,3"}, {"inertia", "0.2"}, {"fault", "law:wind-up"}}, "").value();
   ASSERT_EQ(bus.nodes.size(), 2U);
-  EXPECT_EQ(bus.nodes[0].motor_maker(), dcx26l);
-  EXPECT_EQ(bus.nodes[1].motor_maker(), dcx22l);
+  EXPECT_EQ(&bus.nodes[0].known_motor(), &kDcx26l);
+  EXPECT_EQ(&bus.nodes[1].known_motor(), &kDcx22l);
   for (const auto& node : bus.nodes) {
     EXPECT_EQ(node.inertia, 0.2);
     EXPECT_EQ(node.viscous, 0.1);
