@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "conformance/morap/chapters.hpp"
+#include "conformance/morap/laws.hpp"
 #include "conformance/morap/node_bench.hpp"
 #include "conformance/morap/sets.hpp"
-#include "emulators/morap/control.hpp"
 #include "harness/core/hex.hpp"
 
 /// What the files in chapters/ begin with.

@@ -8,18 +8,16 @@
 #include <cmath>
 #include <utility>
 
-#include "emulators/morap/control.hpp"
+#include "conformance/morap/laws.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/wire/morap/dissector.hpp"
 
 namespace armjig::morap::conformance {
 namespace {
 
-using namespace emulation;
 using namespace std::chrono_literals;
 using enum CommandId;
 
-constexpr std::uint16_t kIdleRate = 200;
 /// Behind a tick; no transaction is as short.
 constexpr Duration kMargin = 20us;
 
@@ -144,7 +142,7 @@ void NodeBench::tick(std::uint16_t rate_hz) {
   if (is_deaf()) return;
   pause_until(next_tick_ + kMargin);
   if (rate_hz != 0) rate_hz_ = rate_hz;
-  next_tick_ += instant_of(tick_period(rate_hz_)) - Instant{};
+  next_tick_ += tick_period(rate_hz_);
 }
 
 void NodeBench::wait_for_tick() {
@@ -153,10 +151,10 @@ void NodeBench::wait_for_tick() {
 }
 
 void NodeBench::expect_read_levels(int levels) {
-  expect_same(read_on(4), bytes_of(static_cast<float>(levels) * 0.046875F));
+  expect_same(read_on(4), bytes_of(static_cast<float>(levels) * kVoltsPerLevel));
 }
 
-void NodeBench::expect_levels_at_ticks(std::initializer_list<int> levels) {
+void NodeBench::expect_levels_at_ticks(std::span<const int> levels) {
   int number = 0;
   const auto what = subject();
   for (const auto level : levels) {
@@ -212,8 +210,8 @@ const Motor& NodeBench::motor() {
 void NodeBench::power_up(std::int64_t shaft) {
   touch("shaft", shaft);
   touch("adc", 0);
-  rate_hz_ = kIdleRate;
-  next_tick_ = now() + (instant_of(tick_period(kIdleRate)) - Instant{});
+  rate_hz_ = kIdleRateHz;
+  next_tick_ = now() + tick_period(kIdleRateHz);
 }
 
 /// What is not acknowledged here is for the cases to find.

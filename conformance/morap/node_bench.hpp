@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,8 +66,8 @@ class NodeBench final : public BusBench {
   void expect_number(CommandId selector, float wanted);  ///< bit for bit
   void expect_near(CommandId selector, double wanted, double tolerance);
   void expect_volts(float wanted) { expect_number(CommandId::kReadVoltage, wanted); }
-  /// The voltage of so many levels of 48/1024 V.
-  void expect_levels(int levels) { expect_volts(static_cast<float>(levels) * 0.046875F); }
+  /// The voltage of so many levels.
+  void expect_levels(int levels) { expect_volts(static_cast<float>(levels) * kVoltsPerLevel); }
   void expect_status(MotorStatus wanted);
   void expect_programming(ProgrammingStatus wanted);
   void expect_absent(BusAddress address);
@@ -84,7 +85,10 @@ class NodeBench final : public BusBench {
   /// The voltage that was chosen to be read.
   void expect_read_levels(int levels);
   /// Reads the voltage behind each of the next ticks.
-  void expect_levels_at_ticks(std::initializer_list<int> levels);
+  void expect_levels_at_ticks(std::span<const int> levels);
+  void expect_levels_at_ticks(std::initializer_list<int> levels) {
+    expect_levels_at_ticks(std::span{levels.begin(), levels.size()});
+  }
 
   /// The motor of the node; skips the case if nobody knows it.
   [[nodiscard]] const Motor& motor();

@@ -41,14 +41,26 @@ void run_turned(NodeBench& node, const ControllerSet& set) {
   node.tick(kRate);
 }
 
-/// One of the stored ones, which of them depends on the motor.
-void stored(NodeBench& node, CommandId mode, float reference, std::uint16_t rate_hz,
-            std::initializer_list<int> levels) {
+/// What the shaft at so many counts at each tick gives, each a tick later.
+std::vector<int> levels_by_law(NodeBench& node, const ControllerSet& set, float reference,
+                               std::initializer_list<int> counts) {
+  const MotorLaw motor{node.motor()};
+  const double wanted{reference};
+  LoopLaw law{node.motor(), set, 0, wanted};
+  std::vector<int> levels;
+  for (const int count : counts) levels.push_back(levels_of(law.step(motor.angle(count), wanted)));
+  return levels;
+}
+
+/// One of the stored ones, on a held shaft.
+void stored(NodeBench& node, CommandId mode, float reference, std::string_view stored,
+            std::initializer_list<int> counts) {
+  const auto set = std::get<ControllerSet>(decode_set(*from_hex(stored)));
   node.send(kCalibrateZero);
   node.tick();
   node.send(mode, reference);
-  node.tick(rate_hz);
-  node.expect_levels_at_ticks(levels);
+  node.tick(set.rate_hz);
+  node.expect_levels_at_ticks(levels_by_law(node, set, reference, counts));
 }
 
 constexpr Case loop(std::string_view rule, CaseBody run) {
@@ -71,24 +83,14 @@ constexpr Clause kClauses[] = {
          "vector 64; recording static-position-locked", Profiles::kFirmware),
     loop("Tick by tick.",
          [](NodeBench& node) {
-           if (node.motor().known.name == "dcx22l") {
-             stored(node, kPosition, 1.0F, 625, {15, 29, 43, 57, 69});
-           } else {
-             stored(node, kPosition, 1.0F, 625, {9, 18, 26, 34, 34});
-           }
+           stored(node, kPosition, 1.0F, node.motor().position_set, {0, 0, 0, 0, 0});
          }),
 
     must("morap.loop.speed-default",
          "The stored speed controller answers a step of 0.2 rad/s of a held shaft as recorded.",
          "vector 65; recording static-speed-locked", Profiles::kFirmware),
     loop("Tick by tick.",
-         [](NodeBench& node) {
-           if (node.motor().known.name == "dcx22l") {
-             stored(node, kSpeed, 0.2F, 500, {5, 8, 12, 14});
-           } else {
-             stored(node, kSpeed, 0.2F, 400, {2, 4, 6, 7});
-           }
-         }),
+         [](NodeBench& node) { stored(node, kSpeed, 0.2F, node.motor().speed_set, {0, 0, 0, 0}); }),
 
     must("morap.loop.reference-order",
          "The last coefficient of the reference belongs to its newest sample.",
@@ -199,19 +201,15 @@ constexpr Clause kClauses[] = {
     must("morap.loop.current-limit-speed",
          "The limit of a loop follows the speed, of which a fifth is new at each tick.",
          "firmware, feedback loop; recording stim-position", Profiles::kFirmware),
-    /// 67 counts in 5 ms: a fifth of the back-EMF of that speed is 0.753 V with one motor and 0.704
-    /// V with the other, and then four fifths of it each time.
     loop("10 V, and one turn of the shaft.",
          [](NodeBench& node) {
-           run(node, proportional(kRate, 10.0F), 1.0F);
+           const auto set = proportional(kRate, 10.0F);
+           run(node, set, 1.0F);
            node.tick();
            node.turn(67);
            node.tick();
-           if (node.motor().known.name == "dcx22l") {
-             node.expect_levels_at_ticks({85, 82, 79, 77});
-           } else {
-             node.expect_levels_at_ticks({49, 46, 44, 42});
-           }
+           const auto levels = levels_by_law(node, set, 1.0F, {0, 0, 67, 67, 67, 67});
+           node.expect_levels_at_ticks(std::span{levels}.subspan(2));
          }),
 
     must("morap.loop.voltage-limit",

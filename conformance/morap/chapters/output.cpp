@@ -53,18 +53,6 @@ void expect_direct(NodeBench& node, float volts, int levels) {
   node.expect_levels(levels);
 }
 
-/// The levels for a current in amperes at standstill.
-int levels_of_current(const Motor& motor, double amperes) {
-  const auto resistance = static_cast<double>(motor.known.constants.resistance);
-  return static_cast<int>(std::lround(amperes * resistance * 1024 / 48));
-}
-
-double torque_constant(const Motor& motor) {
-  const auto constants = motor.known.constants;
-  return static_cast<double>(constants.efficiency) *
-         static_cast<double>(constants.torque_constant) * static_cast<double>(constants.gear_ratio);
-}
-
 /// Runs a loop, whose third step is then the first with another reference.
 void expect_loop_rate(NodeBench& node, std::uint16_t rate_hz, int ticks) {
   node.send(proportional(rate_hz, 1.0F));
@@ -259,8 +247,7 @@ constexpr Clause kClauses[] = {
               node.about(fmt::format("{} N m", torque));
               node.send(kTorque, torque);
               node.tick();
-              const auto amperes = static_cast<double>(torque) / torque_constant(node.motor());
-              node.expect_levels(levels_of_current(node.motor(), amperes));
+              node.expect_levels(levels_of(MotorLaw{node.motor()}.torque_voltage(torque, 0)));
             }
           }),
 
@@ -286,12 +273,8 @@ constexpr Clause kClauses[] = {
             node.ticks(2);
             node.turn(100);
             node.tick();
-            // K n times 100 counts in 5 ms.
-            const auto constants = node.motor().known.constants;
-            const double counts_per_turn = 4.0 * static_cast<double>(constants.pulses_per_turn);
-            const double volts = static_cast<double>(constants.torque_constant) * 100 * 2 *
-                                 3.14159265358979 / counts_per_turn / 0.005;
-            node.expect_levels(static_cast<int>(std::lround(volts * 1024 / 48)));
+            const MotorLaw law{node.motor()};
+            node.expect_levels(levels_of(law.torque_voltage(0, law.angle(100) * kIdleRateHz)));
             node.tick();
             node.expect_levels(0);
           }),

@@ -32,12 +32,7 @@ void expect_rate(NodeBench& node, TuneKind kind, float inertia, int rate_hz) {
 
 /// The inertia with which the motor's own pole is at `-pole`.
 float inertia_of(const Motor& motor, double pole) {
-  const auto m = motor.known.constants;
-  const auto constant = static_cast<double>(m.torque_constant) * static_cast<double>(m.gear_ratio);
-  const auto resistance = static_cast<double>(m.resistance);
-  const auto damping = static_cast<double>(m.efficiency) * constant * constant +
-                       resistance * static_cast<double>(m.friction);
-  return static_cast<float>(damping / (resistance * pole));
+  return static_cast<float>(MotorLaw{motor}.inertia(pole));
 }
 
 constexpr Clause kClauses[] = {
