@@ -3,33 +3,6 @@
 
 namespace armjig::kinovazed::conformance {
 
-using namespace emulation;
-
-int beat_of(State state) noexcept {
-  switch (state) {
-    case State::kEmergencyStopped:
-      return 3;
-    case State::kPoweredOff:
-    case State::kInitializing:
-      return 1;
-    case State::kIdle:
-      return 21;
-    case State::kRetracted:
-      return 133;
-    case State::kSteering:
-      return 69;
-    case State::kRunningSequence:
-      return 37;
-    case State::kFrozen:
-      return 13;
-    case State::kRetracting:
-    case State::kUnfolding:
-    case State::kSettingMode:
-      break;
-  }
-  return 5;
-}
-
 void switch_off(ServerBench& server) {
   server.accept("EStop");
   server.accept("QuitEStop");

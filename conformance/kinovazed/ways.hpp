@@ -3,12 +3,12 @@
 
 #include <string_view>
 
+#include "conformance/kinovazed/laws.hpp"
 #include "conformance/kinovazed/server_bench.hpp"
 #include "conformance/suite.hpp"
-#include "emulators/kinovazed/machine.hpp"
 #include "harness/rig/guard.hpp"
 
-/// Ways into the states of the server, and what a beat says there.
+/// Ways into the states of the server.
 namespace armjig::kinovazed::conformance {
 
 /// A target so far away from the ready pose that the fastest arm needs more than a second.
@@ -17,33 +17,30 @@ inline constexpr auto kFarObjective = "RunObjective:SuckDoor";
 inline constexpr Duration kBeforeBeat = std::chrono::milliseconds{420};
 
 /// From which start a case reaches a state by `enter`.
-[[nodiscard]] constexpr Start start_for(emulation::State state) noexcept {
+[[nodiscard]] constexpr Start start_for(State state) noexcept {
   switch (state) {
-    case emulation::State::kEmergencyStopped:
+    case State::kEmergencyStopped:
       return kStopped;
-    case emulation::State::kPoweredOff:
+    case State::kPoweredOff:
       return kOff;
-    case emulation::State::kSteering:
+    case State::kSteering:
       return kSteering;
-    case emulation::State::kInitializing:
-    case emulation::State::kRetracted:
-    case emulation::State::kUnfolding:
+    case State::kInitializing:
+    case State::kRetracted:
+    case State::kUnfolding:
       return kFolded;
     default:
       return kReady;
   }
 }
 
-[[nodiscard]] constexpr Hazard hazard_of(emulation::State state) noexcept {
-  if (state == emulation::State::kEmergencyStopped) return Hazard::kObserve;
-  return state == emulation::State::kPoweredOff ? Hazard::kState : Hazard::kMove;
+[[nodiscard]] constexpr Hazard hazard_of(State state) noexcept {
+  if (state == State::kEmergencyStopped) return Hazard::kObserve;
+  return state == State::kPoweredOff ? Hazard::kState : Hazard::kMove;
 }
 
-/// The beat of a state that was not entered anew from idle.
-[[nodiscard]] int beat_of(emulation::State state) noexcept;
-
 /// Goes to the state from its start. A beat comes soon behind.
-void enter(ServerBench& server, emulation::State state);
+void enter(ServerBench& server, State state);
 
 /// From retracted to poweredOff; the arm stays folded, so that initializing takes its time.
 void switch_off(ServerBench& server);
@@ -59,8 +56,7 @@ void half_close(ServerBench& server);
 void expect_hung(ServerBench& server);
 
 /// A case that begins where its state can be entered; with motion it is not quick.
-[[nodiscard]] constexpr Case in(emulation::State state, std::string_view rule,
-                                CaseBody run) noexcept {
+[[nodiscard]] constexpr Case in(State state, std::string_view rule, CaseBody run) noexcept {
   const auto one = from(start_for(state), hazard_of(state), rule, run);
   return one.hazard == Hazard::kMove ? full(one) : one;
 }

@@ -4,38 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "harness/wire/kinovazed/line.hpp"
+#include "harness/wire/kinovazed/state.hpp"
 
-/// What the server may do when: its states, and what commands and the arm make of them. Tables
-/// only; time and arm are elsewhere.
+/// What the server may do when: what commands and the arm make of its states. Tables only; time and
+/// arm are elsewhere.
 namespace armjig::kinovazed::emulation {
-
-enum class State : std::uint8_t {
-  kEmergencyStopped,
-  kPoweredOff,
-  kInitializing,
-  kIdle,
-  kRetracting,
-  kRetracted,
-  kUnfolding,
-  kSettingMode,
-  kSteering,
-  kRunningSequence,
-  kFrozen,
-};
-inline constexpr std::array<std::string_view, 11> kStateNames{
-    "emergencyStopped", "poweredOff",      "initializing", "idle",
-    "retracting",       "retracted",       "unfolding",    "settingMode",
-    "steering",         "runningSequence", "frozen"};
-
-[[nodiscard]] constexpr std::string_view to_string(State state) noexcept {
-  return kStateNames[static_cast<std::size_t>(state)];
-}
-
-/// Verbs that the state machine knows; those behind `kRunObjective` pass it by.
-inline constexpr std::size_t kMachineVerbs = 10;
 
 /// What the supervision of the arm tells.
 enum class ArmEvent : std::uint8_t {
@@ -62,7 +37,7 @@ struct ArmRow {
 
 /// A whole machine, as data: another one is a server that is wrong.
 struct Machine {
-  std::array<std::array<std::optional<State>, kMachineVerbs>, kStateNames.size()> commands{};
+  std::array<std::array<std::optional<State>, kAnsweredVerbs>, kStateNames.size()> commands{};
   std::array<ArmRow, 7> arm{};
   std::array<std::uint8_t, kStateNames.size()> flags{};
 

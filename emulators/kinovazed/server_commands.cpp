@@ -48,12 +48,10 @@ void Server::serve_line(std::string_view line) {
     if (answers) say(Event::kRejected);
     return;
   }
-  const bool names_objective =
-      command->verb == Verb::kRunObjective || command->verb == Verb::kSetActiveObjective;
-  const bool is_known =
-      !names_objective || static_cast<std::size_t>(command->objective) < behaviour.objective_count;
+  const bool is_known = !names_objective(command->verb) ||
+                        static_cast<std::size_t>(command->objective) < behaviour.objective_count;
   if (!is_known) return say(Event::kRejected);
-  if (static_cast<std::size_t>(command->verb) >= kMachineVerbs) return serve_console(*command);
+  if (!is_answered(command->verb)) return serve_console(*command);
   begin(*command);
 }
 

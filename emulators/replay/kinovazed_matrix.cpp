@@ -20,7 +20,7 @@ namespace {
 using namespace emulation;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
-using enum emulation::State;
+using enum State;
 
 constexpr std::string_view kFormat = "state-command-matrix/1";
 /// Replies are what comes by then.

@@ -6,10 +6,10 @@
 namespace armjig::kinovazed::conformance {
 namespace {
 
-using enum emulation::State;
+using enum State;
 
 /// A mode that cannot be read, once: the server notices at its next look.
-template <emulation::State state>
+template <State state>
 void silent_stop(ServerBench& server) {
   enter(server, state);
   server.touch("arm.fail.status_read", 1);

@@ -6,12 +6,12 @@
 namespace armjig::kinovazed::conformance {
 namespace {
 
-using enum emulation::State;
+using enum State;
 
-template <emulation::State state>
+template <State state>
 void value(ServerBench& server) {
   enter(server, state);
-  server.expect_beat(beat_of(state));
+  server.expect_beat(beat_of(state).flags);
 }
 
 /// The arm cannot be read and not be opened again, for a while.

@@ -6,12 +6,12 @@
 namespace armjig::kinovazed::conformance {
 namespace {
 
-using enum emulation::State;
+using enum State;
 
 /// Longer than what was interrupted would have taken with any arm.
 constexpr Duration kLater = 6s;
 
-template <emulation::State state>
+template <State state>
 void estop(ServerBench& server) {
   enter(server, state);
   server.accept("EStop");

@@ -6,7 +6,7 @@
 namespace armjig::kinovazed::conformance {
 namespace {
 
-using enum emulation::State;
+using enum State;
 
 constexpr auto kStop = "MoveJoystick:0:0:0";
 

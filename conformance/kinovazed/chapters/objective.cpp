@@ -6,7 +6,7 @@
 namespace armjig::kinovazed::conformance {
 namespace {
 
-using enum emulation::State;
+using enum State;
 
 Heard run(ServerBench& server, std::string_view objective) {
   return server.perform("RunObjective:" + std::string{objective}, Event::kObjectiveDone,

@@ -6,8 +6,6 @@
 namespace armjig::kinovazed::conformance {
 namespace {
 
-using namespace emulation;
-
 /// The event is the very next message behind `Accepted`.
 void expect_prompt(ServerBench& server, std::string_view command, Event event) {
   server.about(std::string{command});
@@ -50,7 +48,7 @@ void console_harmless(ServerBench& server) {
     server.say(command);
   }
   server.expect_silence();
-  server.expect_beat(beat_of(state));
+  server.expect_beat(beat_of(state).flags);
 }
 
 constexpr Clause kClauses[] = {

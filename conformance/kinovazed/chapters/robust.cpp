@@ -6,7 +6,7 @@
 namespace armjig::kinovazed::conformance {
 namespace {
 
-using enum emulation::State;
+using enum State;
 
 std::string repeated(std::string_view text, int times) {
   std::string all;

@@ -8,10 +8,10 @@ namespace {
 
 using namespace std::string_view_literals;
 
-using enum emulation::State;
+using enum State;
 
 /// EStop comes in any state, and what it ended is not told.
-template <emulation::State state>
+template <State state>
 void estop(ServerBench& server) {
   enter(server, state);
   server.accept("EStop");
@@ -59,15 +59,15 @@ constexpr auto kNotInRunning = all_but("SetJoystickMode:Rotation"sv, "RunObjecti
 
 constexpr auto kNotInFrozen = all_but("Freeze"sv, "Unfreeze"sv);
 
-template <emulation::State state, const auto& commands>
+template <State state, const auto& commands>
 void refused(ServerBench& server) {
   enter(server, state);
   refuse_all(server, commands);
-  server.expect_beat(beat_of(state));
+  server.expect_beat(beat_of(state).flags);
 }
 
 /// Of states that end by themselves.
-template <emulation::State state, const auto& commands, Event event>
+template <State state, const auto& commands, Event event>
 void refused_until(ServerBench& server) {
   enter(server, state);
   refuse_all(server, commands);

@@ -4,19 +4,19 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <variant>
 
 #include "conformance/kinovazed/host/occasions.hpp"
+#include "conformance/kinovazed/laws.hpp"
 #include "harness/drive/kinovazed/drive.hpp"
 
 namespace armjig::kinovazed::programs {
 namespace {
 
-using namespace emulation;
+using namespace conformance;
 using namespace std::chrono_literals;
-using enum emulation::State;
+using enum State;
 
 /// In which a server answers (kinovazed.time.answer).
 constexpr Duration kAnswer = 500ms;
@@ -29,27 +29,8 @@ constexpr Duration kMovesWindow = 1s;
 /// Moves in such a window at 17 in a second, with one at each end.
 constexpr std::size_t kMostMoves = 18;
 
-/// Where accepted commands lead, by `Verb`.
-constexpr std::array<State, kMachineVerbs> kLeadsTo{
-    kEmergencyStopped, kPoweredOff, kInitializing, kUnfolding, kRetracting,
-    kFrozen,           kIdle,       kSettingMode,  kSteering,  kRunningSequence};
-
-constexpr State leads_to(Verb verb) noexcept { return kLeadsTo[static_cast<std::size_t>(verb)]; }
-
 bool is_deflection(const Command& command) noexcept {
   return command.verb == Verb::kMoveJoystick && command.deflection != Deflection{};
-}
-
-/// States that the flags of a heartbeat do not tell apart.
-bool is_shown_by_none(State state) noexcept { return shipped_machine().flag(state) == 0; }
-
-/// What a heartbeat shows; none for what no flag does.
-std::optional<State> shown_state(Heartbeat beat) noexcept {
-  for (std::size_t i = 0; i < kStateNames.size(); ++i) {
-    const auto state = static_cast<State>(i);
-    if ((shipped_machine().flag(state) & beat.flags) != 0) return state;
-  }
-  return std::nullopt;
 }
 
 bool is_motion(State state) noexcept {
@@ -130,7 +111,7 @@ void Conduct::command(Instant time, const Command& command, const Complain& comp
   if (requests_.empty()) judge_state(time, command, complain);
   judge_joystick(time, command, complain);
   judge_objective(command, complain);
-  if (drive::is_answered(command.verb)) requests_.push_back({.command = command, .sent = time});
+  if (is_answered(command.verb)) requests_.push_back({.command = command, .sent = time});
 }
 
 void Conduct::note_occasions(Instant time, const Command& command, const Complain& complain) const {
@@ -138,13 +119,12 @@ void Conduct::note_occasions(Instant time, const Command& command, const Complai
     if (is_one) complain.occasion(what);
   };
   const auto verb = command.verb;
-  const bool has_objective = verb == Verb::kRunObjective || verb == Verb::kSetActiveObjective;
   note(is_silent(time), occasion::kSilence);
   note(verb == Verb::kEStop, occasion::kEstop);
   note(verb == Verb::kMoveJoystick, occasion::kJoystick);
   note(verb == Verb::kSetJoystickMode, occasion::kMode);
   note(is_steering_mode(command) && mode_set_, occasion::kTwoModes);
-  note(has_objective, occasion::kObjective);
+  note(names_objective(verb), occasion::kObjective);
   note(verb == Verb::kSetActiveObjective, occasion::kActiveObjective);
   note(verb == Verb::kGetObjectivePosition, occasion::kObjectivePosition);
 }
@@ -170,15 +150,14 @@ void Conduct::judge_turn(const Command& command, const Complain& complain) const
 
 /// A command that led to where the server rests may come again: the document has it answered.
 bool Conduct::is_allowed(Instant time, Verb verb) const noexcept {
-  const auto& machine = shipped_machine();
   const bool recurs = led_here_ == verb && !is_motion(*state_) && state_ != kSettingMode;
-  if (machine.next_state(*state_, verb) || recurs) return true;
-  return time < before_until_ && (!before_ || machine.next_state(*before_, verb));
+  if (is_accepted(*state_, verb) || recurs) return true;
+  return time < before_until_ && (!before_ || is_accepted(*before_, verb));
 }
 
 void Conduct::judge_state(Instant time, const Command& command, const Complain& complain) const {
   const auto verb = command.verb;
-  if (!state_ || !drive::is_answered(verb) || is_allowed(time, verb)) return;
+  if (!state_ || !is_answered(verb) || is_allowed(time, verb)) return;
   complain(requirement_of(*state_, verb, is_stop_unasked_),
            fmt::format("{} came in state {}", to_string(verb), to_string(*state_)));
 }
@@ -218,9 +197,7 @@ void Conduct::judge_objective(const Command& command, const Complain& complain) 
   if (command.verb == Verb::kGetObjectivePosition && !is_objective_chosen_) {
     complain("kinovazed.host.chosen-objective", "no objective was chosen or run before");
   }
-  if (command.verb == Verb::kSetActiveObjective || command.verb == Verb::kRunObjective) {
-    is_objective_chosen_ = true;
-  }
+  is_objective_chosen_ = is_objective_chosen_ || names_objective(command.verb);
 }
 
 void Conduct::leave(Instant time, const Complain& complain_now) {
@@ -305,19 +282,7 @@ void Conduct::take_event(Instant time, Event event) {
     overtaken_ = time;
     requests_.erase(asked);
   }
-  switch (event) {
-    case Event::kRetracted:
-      enter(time, kRetracted);
-      break;
-    case Event::kFreezed:
-      enter(time, kFrozen);
-      break;
-    case Event::kJoystickModeSet:
-      enter(time, mode_ == Mode::kNoMode ? kIdle : kSteering);
-      break;
-    default:
-      enter(time, kIdle);
-  }
+  enter(time, state_behind(event, mode_));
   before_ = before;
   before_until_ = time + noise_;
 }
@@ -326,7 +291,7 @@ void Conduct::take_beat(Instant time, Heartbeat beat) noexcept {
   const bool is_first = !std::exchange(has_looked_, true);
   if (!requests_.empty()) return;  // it may show the state before or after them
   const auto shown = shown_state(beat);
-  const bool is_as_known = shown ? state_ == shown : state_ && is_shown_by_none(*state_);
+  const bool is_as_known = shown ? state_ == shown : state_ && !shown_state(beat_of(*state_));
   if (is_as_known) return;
   const auto before = state_;
   enter(time, shown);

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "conformance/program_checker.hpp"
-#include "emulators/kinovazed/machine.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/kinovazed/line.hpp"
+#include "harness/wire/kinovazed/state.hpp"
 
 namespace armjig::kinovazed::programs {
 
@@ -38,7 +38,7 @@ class Conduct {
   };
 
   void give_up_waiting(Instant time);
-  void enter(Instant time, std::optional<emulation::State> state) noexcept;
+  void enter(Instant time, std::optional<State> state) noexcept;
   void accept_first(Instant time);
   void take_reply(Instant time, Event reply);
   void take_event(Instant time, Event event);
@@ -60,9 +60,9 @@ class Conduct {
   std::deque<Request> requests_;      ///< without an answer, oldest first
   std::optional<Instant> overtaken_;  ///< when an event came whose Accepted did not come yet
 
-  std::optional<emulation::State> state_;  ///< as the client can know it
+  std::optional<State> state_;  ///< as the client can know it
   Instant entered_{};
-  std::optional<emulation::State> before_;  ///< for a client that has not read of the change yet
+  std::optional<State> before_;  ///< for a client that has not read of the change yet
   Instant before_until_{};
   std::optional<Verb> led_here_;
   bool is_stop_unasked_ = false;

@@ -76,9 +76,8 @@ void judge_fault(std::string_view line, LineFault fault,
 }
 
 void judge_values(const Command& command, const Complain& complain) {
-  const bool has_objective =
-      command.verb == Verb::kRunObjective || command.verb == Verb::kSetActiveObjective;
-  if (has_objective && static_cast<std::size_t>(command.objective) >= kDocumentedObjectives) {
+  if (names_objective(command.verb) &&
+      static_cast<std::size_t>(command.objective) >= kDocumentedObjectives) {
     complain("kinovazed.host.objective-documented",
              fmt::format("{} came later", to_string(command.objective)));
   }

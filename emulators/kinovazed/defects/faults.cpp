@@ -73,7 +73,7 @@ bool add_row(std::string_view text, const Draft& draft) {
   const auto state = find_word<State>(kStateNames, take_until(text, '.'));
   const auto verb = find_word<Verb>(kVerbNames, take_until(text, '.'));
   const auto next = find_word<State>(kStateNames, text);
-  if (!state || !verb || static_cast<std::size_t>(*verb) >= kMachineVerbs) return false;
+  if (!state || !verb || !is_answered(*verb)) return false;
   if (!next && text != "rejected") return false;
   draft.options.machine
       .commands[static_cast<std::size_t>(*state)][static_cast<std::size_t>(*verb)] = next;
@@ -208,11 +208,11 @@ constexpr std::array kForms{
 /// Every cell of the table, wrong: what is accepted is refused, and what is refused leads to where
 /// the verb leads elsewhere.
 void list_rows(std::vector<NamedFault>& all) {
-  constexpr std::array<std::string_view, kMachineVerbs> kElsewhere{
+  constexpr std::array<std::string_view, kAnsweredVerbs> kElsewhere{
       "emergencyStopped", "poweredOff", "initializing", "unfolding", "retracting",
       "frozen",           "idle",       "settingMode",  "steering",  "runningSequence"};
   for (std::size_t s = 0; s < kStateNames.size(); ++s) {
-    for (std::size_t v = 0; v < kMachineVerbs; ++v) {
+    for (std::size_t v = 0; v < kAnsweredVerbs; ++v) {
       const auto is_accepted = shipped_machine().commands[s][v].has_value();
       all.push_back({fmt::format("row:{}.{}.{}", kStateNames[s], kVerbNames[v],
                                  is_accepted ? "rejected" : kElsewhere[v]),
@@ -245,7 +245,7 @@ void list_messages(std::vector<NamedFault>& all) {
 
 void list_words(std::vector<NamedFault>& all) {
   // A console command that is not known is as silent as one that is.
-  for (const auto word : std::span{kVerbNames}.first<kMachineVerbs>()) {
+  for (const auto word : std::span{kVerbNames}.first<kAnsweredVerbs>()) {
     all.push_back({fmt::format("deaf:{}", word), "Lines"});
   }
   for (const auto word : kModeNames) all.push_back({fmt::format("deaf:{}", word), "Joystick"});

@@ -79,8 +79,6 @@ std::string describe(const DriveEvent& event) {
 
 std::optional<Event> event_of(Verb verb) noexcept { return row_of(verb).event; }
 Duration time_for(Verb verb) noexcept { return row_of(verb).time; }
-bool is_answered(Verb verb) noexcept { return verb < Verb::kSetActiveObjective; }
-
 void Drive::connect(Instant now) noexcept {
   is_connected_ = true;
   is_silent_ = false;

@@ -77,9 +77,6 @@ struct DriveEvent {
 /// all.
 [[nodiscard]] std::optional<Event> event_of(Verb verb) noexcept;
 
-/// Whether the server answers such a command at all.
-[[nodiscard]] bool is_answered(Verb verb) noexcept;
-
 /// How long the event of such a command may take: arm at its slowest, and some more.
 [[nodiscard]] Duration time_for(Verb verb) noexcept;
 

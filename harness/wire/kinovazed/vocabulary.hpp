@@ -41,6 +41,14 @@ inline constexpr std::array<std::string_view, 13> kVerbNames{"EStop",
                                                              "SetActiveObjective",
                                                              "GetObjectivePosition",
                                                              "GetAbsolutePosition"};
+/// The first so many are answered, and decided by the server's state; the others are for its log.
+inline constexpr std::size_t kAnsweredVerbs = 10;
+[[nodiscard]] constexpr bool is_answered(Verb verb) noexcept {
+  return static_cast<std::size_t>(verb) < kAnsweredVerbs;
+}
+[[nodiscard]] constexpr bool names_objective(Verb verb) noexcept {
+  return verb == Verb::kRunObjective || verb == Verb::kSetActiveObjective;
+}
 
 enum class Mode : std::uint8_t { kNoMode, kXyz, kRotation, kAxis1to3, kAxis4to6 };
 inline constexpr std::array<std::string_view, 5> kModeNames{"NoMode", "XYZ", "Rotation", "Axis1to3",

@@ -59,13 +59,12 @@ constexpr Room kRooms[] = {
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
     {"emulators/host", "harness/core harness/link harness/timing emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},
+    {"conformance/kinovazed/mutants.cpp", "conformance emulators/kinovazed"},
     {"conformance/morap/mutants.cpp", "conformance emulators/morap"},
     {"conformance/morap/target.cpp", "conformance harness/config emulators/morap"},
     {"conformance",
      "harness/core harness/wire harness/files harness/config harness/link harness/drive "
-     "harness/rig harness/report emulators/faults emulators/kinovazed "
-     "emulators/parol6 "
-     "emulators/memory"},
+     "harness/rig harness/report emulators/faults emulators/parol6 emulators/memory"},
     {"cli/devices", "cli harness emulators conformance"},
     {"cli", "harness emulators conformance"},
 };
