@@ -15,4 +15,43 @@ bool ArmPort::attempt(ArmCall call) noexcept {
   return false;
 }
 
+bool ArmPort::call(Instant time, ArmCall call, ArmData& data) {
+  if (!attempt(call)) return false;
+  with_plant(time, [&](auto& plant) {
+    switch (call) {
+      case ArmCall::kTakeControl:
+        return plant.take_control();
+      case ArmCall::kReleaseControl:
+        return plant.release_control();
+      case ArmCall::kReadPosition:
+        data.pose = plant.read_pose();
+        return;
+      case ArmCall::kReadStatus:
+        data.mode = plant.mode();
+        return;
+      case ArmCall::kReadCurrent:
+        data.current_sum = plant.current_sum();
+        return;
+      case ArmCall::kErase:
+        return plant.erase();
+      case ArmCall::kWriteAxes:
+        return plant.move_stick(data.stick);
+      case ArmCall::kReleaseStick:
+        return plant.release_all();
+      case ArmCall::kPressHome:
+        return plant.press_home();
+      case ArmCall::kWriteTarget:
+        return plant.go_to(data.target);
+      case ArmCall::kSelectCartesian:
+        return plant.select(Control::kCartesian);
+      case ArmCall::kSelectAngular:
+        return plant.select(Control::kAngular);
+      case ArmCall::kOpen:
+      case ArmCall::kReadVelocity:
+        return;
+    }
+  });
+  return true;
+}
+
 }  // namespace armjig::kinovazed::emulation

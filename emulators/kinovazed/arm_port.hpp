@@ -52,6 +52,15 @@ inline constexpr std::array<std::string_view, 14> kArmCallNames{"arm_open",
   return kArmCallNames[static_cast<std::size_t>(call)];
 }
 
+/// What calls take with them and bring back, each its own.
+struct ArmData {
+  Stick stick;  ///< written
+  Pose target;  ///< written
+  Pose pose;    ///< read, as are the others
+  ArmMode mode{};
+  float current_sum{};
+};
+
 using Plant = std::variant<BenchArm, JacoArm>;
 
 /// The arm on its USB cable: a plant, and whether calls get through to it.
@@ -68,6 +77,8 @@ class ArmPort {
 
   /// Whether the next use of the call gets through.
   [[nodiscard]] bool attempt(ArmCall call) noexcept;
+  /// False: the call does not get through, and nothing happens.
+  [[nodiscard]] bool call(Instant time, ArmCall call, ArmData& data);
 
   void fail(ArmCall call, Failure failure) noexcept {
     failures_[static_cast<std::size_t>(call)] = failure;

@@ -14,7 +14,10 @@ namespace armjig::kinovazed::emulation {
 namespace pace {
 using std::chrono::milliseconds;
 inline constexpr Duration kPoll = milliseconds{10};
+inline constexpr Duration kPause = milliseconds{10};  ///< behind press, release, axes, erase
+inline constexpr Duration kLongPress = milliseconds{200};
 inline constexpr Duration kOpen = milliseconds{50};
+inline constexpr Duration kReopen = milliseconds{50};
 inline constexpr Duration kRetryAtStart = milliseconds{1000};
 inline constexpr Duration kModeSettles = milliseconds{500};
 inline constexpr Duration kBeat = milliseconds{1000};

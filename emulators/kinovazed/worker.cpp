@@ -7,21 +7,73 @@
 namespace armjig::kinovazed::emulation {
 namespace {
 
-constexpr std::uint16_t kPauseMs = 10;        // after press, release, zero axes, erase
-constexpr std::uint16_t kLongPressMs = 200;   // from mode 4: the arm overlooks a shorter one
-constexpr std::uint16_t kReopenPauseMs = 50;  // between attempts to open the arm again
 constexpr int kStartAttempts = 120;
 constexpr float kHighestCurrent = 4.5F;  // ampere, all joints together
 
-std::chrono::milliseconds milliseconds(std::uint16_t count) noexcept {
-  return std::chrono::milliseconds{count};
+constexpr bool is_angular(Mode mode) noexcept {
+  return mode == Mode::kAxis1to3 || mode == Mode::kAxis4to6;
 }
 
 }  // namespace
 
+struct Worker::Row {
+  std::optional<ArmCall> call;
+  void (Worker::*done)();
+  void (Worker::*failed)();  ///< nothing but a call does
+  std::optional<Duration> time{};
+};
+
+/// A step's call to the arm, what follows if it works and if it fails, and its time if that is not
+/// the call's. Nothing interrupts a step, nor what is planned behind it: a command that ends a
+/// motion posts jobs of its own. Only the end of the thread drops what is still to come (`die`).
+struct Worker::Steps {
+  using W = Worker;
+  using Call = ArmCall;
+
+  // step, call to the arm, what follows if it works and if it fails, its time
+  static constexpr Row kFindArm{Call::kOpen, &W::begin_to_poll, &W::search_again, pace::kOpen};
+  static constexpr Row kPauseBeforeSearch{{}, &W::go_on, {}, pace::kRetryAtStart};
+  static constexpr Row kStarted{{}, &W::note_start, {}};
+  // The poll. A pose that cannot be read is a warning in the server's log.
+  static constexpr Row kReadPose{Call::kReadPosition, &W::take_pose, &W::go_on};
+  static constexpr Row kReadMode{Call::kReadStatus, &W::take_mode, &W::fail};
+  static constexpr Row kReadCurrents{Call::kReadCurrent, &W::take_current, &W::fail};
+  // kinovazed.death.velocity
+  static constexpr Row kReadVelocities{Call::kReadVelocity, &W::go_on, &W::give_up};
+  static constexpr Row kRepair{{}, &W::repair, {}};
+  static constexpr Row kOpen{Call::kOpen, &W::forget_arm, &W::open_again, pace::kOpen};
+  static constexpr Row kPauseBeforeOpening{{}, &W::go_on, {}, pace::kReopen};
+  static constexpr Row kRepaired{{}, &W::tell_of_repairs, {}};
+  // What jobs are made of.
+  static constexpr Row kTakeControl{Call::kTakeControl, &W::note_control, &W::fail};
+  static constexpr Row kReleaseControl{Call::kReleaseControl, &W::note_no_control, &W::fail};
+  static constexpr Row kErase{Call::kErase, &W::pause, &W::fail};
+  // kinovazed.stop.no-release
+  static constexpr Row kZeroAxes{Call::kWriteAxes, &W::pause, &W::fail_without_next};
+  static constexpr Row kRelease{Call::kReleaseStick, &W::pause, &W::fail};
+  // kinovazed.arm.silent-stop
+  static constexpr Row kReleaseThere{Call::kReleaseStick, &W::pause, &W::fail_without_next};
+  static constexpr Row kPress{Call::kPressHome, &W::pause, &W::fail};
+  static constexpr Row kPause{{}, &W::go_on, {}, pace::kPause};
+  static constexpr Row kLongPress{{}, &W::go_on, {}, pace::kLongPress};
+  static constexpr Row kFreshModeToInitialize{Call::kReadStatus, &W::initialize, &W::fail};
+  // kinovazed.death.retract-read
+  static constexpr Row kFreshModeToRetract{Call::kReadStatus, &W::retract, &W::fail_or_abort};
+  // kinovazed.death.mode-write, kinovazed.death.mode-release
+  static constexpr Row kSelectCartesian{Call::kSelectCartesian, &W::guard_mode, &W::give_up};
+  static constexpr Row kSelectAngular{Call::kSelectAngular, &W::guard_mode, &W::give_up};
+  static constexpr Row kModeRelease{Call::kReleaseStick, &W::pause, &W::fail_or_abort};
+  static constexpr Row kModeIsSet{{}, &W::note_mode, {}};
+  static constexpr Row kWriteAxes{Call::kWriteAxes, &W::go_on, &W::fail};
+  static constexpr Row kWriteTarget{Call::kWriteTarget, &W::note_target, &W::fail};
+  static constexpr Row kPostEvent{{}, &W::post_event, {}};
+
+  static constexpr std::initializer_list<Step> kStop{kErase, kZeroAxes, kRelease};
+};
+
 void Worker::start(Instant now) {
   now_ = now;
-  push(Step::Kind::kFindArm);
+  next({Steps::kFindArm});
   job_ = Job{};
 }
 
@@ -48,7 +100,8 @@ Worker::Report Worker::run_until(Instant limit) {
     } else if (!steps_.empty()) {
       step_ = steps_.back();
       steps_.pop_back();
-      step_ends_ = now_ + duration(*step_);
+      const auto& row = *step_->row;
+      step_ends_ = now_ + row.time.value_or(row.call ? call_time_ : Duration{});
     } else if (job_) {
       const auto report = finish_job();
       if (report.kind != Kind::kNothing) return report;
@@ -98,356 +151,230 @@ void Worker::die() noexcept {
 }
 
 /// What the shipped server does not survive and any other repairs.
-void Worker::give_up() {
-  if (behaviour_.dies) {
-    die();
-  } else {
-    has_failed_ = true;
-  }
+void Worker::give_up() noexcept { behaviour_.dies ? die() : fail(); }
+
+void Worker::fail_or_abort() noexcept {
+  aborts_ = behaviour_.dies;
+  fail();
+}
+
+void Worker::fail_without_next() {
+  steps_.pop_back();
+  fail();
 }
 
 void Worker::begin(const Job& job) {
-  using Kind = Step::Kind;
+  using S = Steps;
   job_ = job;
+  data_.stick = {};
+  data_.target = job.target;
   switch (job.kind) {
     case Job::Kind::kPoll:
       poll_due_ = now_ + pace::kPoll;
-      push(Kind::kRepair);
-      return push_poll();
+      return poll_before(S::kRepair);
     case Job::Kind::kStop:
-      return push_stop();
+      return next(S::kStop);
     case Job::Kind::kTakeControl:
-      return push(Kind::kTakeControl);
+      return next({S::kTakeControl});
     case Job::Kind::kReleaseControl:
-      return push(Kind::kReleaseControl);
+      return next({S::kReleaseControl});
     case Job::Kind::kInitialize:
-      if (!has_failed_) push(Kind::kFreshModeToInitialize);
+      if (!has_failed_) next({S::kFreshModeToInitialize});
       return;
     case Job::Kind::kUnfold:
       movement_ = Movement::kHoming;
-      return push_homing(mode_.value_or(ArmMode::kError), ArmEvent::kHomeReached);
+      return home(ArmEvent::kHomeReached);
     case Job::Kind::kRetract:
-      return push(Kind::kFreshModeToRetract);
+      return next({S::kFreshModeToRetract});
     case Job::Kind::kSetMode:
-      push(Kind::kModeIsSet);
-      push(Kind::kModeRelease);
-      return push(Kind::kSelect);
+      return next({is_angular(job.mode) ? S::kSelectAngular : S::kSelectCartesian, S::kModeRelease,
+                   S::kModeIsSet});
     case Job::Kind::kMove:
-      return push(Kind::kWriteAxes);
+      data_.stick = stick_of(job.deflection);
+      return next({S::kWriteAxes});
     case Job::Kind::kGoTo:
-      return push(Kind::kWriteTarget);
+      return next({S::kWriteTarget});
     case Job::Kind::kWait:
     case Job::Kind::kEvent:
       return;
   }
 }
 
-void Worker::then_stop() {
-  for (const auto kind : {Step::Kind::kErase, Step::Kind::kZeroAxes, Step::Kind::kRelease}) {
-    asked_.push_back({kind, 0});
-  }
-}
+void Worker::then_stop() { asked_.insert(asked_.end(), Steps::kStop); }
 
 void Worker::then_go_to(const Pose& target) {
-  job_->target = target;
-  asked_.push_back({Step::Kind::kWriteTarget, 0});
+  data_.target = target;
+  asked_.emplace_back(Steps::kWriteTarget);
 }
 
-void Worker::then_release_control() { asked_.push_back({Step::Kind::kReleaseControl, 0}); }
-
-void Worker::push_stop() {
-  push(Step::Kind::kRelease);
-  push(Step::Kind::kZeroAxes);
-  push(Step::Kind::kErase);
-}
-
-void Worker::push_poll() {
-  push(Step::Kind::kReadVelocities);
-  push(Step::Kind::kReadCurrents);
-  push(Step::Kind::kReadMode);
-  push(Step::Kind::kReadPose);
-}
-
-std::optional<ArmCall> Worker::call_of(Step step) const noexcept {
-  switch (step.kind) {
-    case Step::Kind::kFindArm:
-    case Step::Kind::kOpen:
-      return ArmCall::kOpen;
-    case Step::Kind::kReadPose:
-      return ArmCall::kReadPosition;
-    case Step::Kind::kReadMode:
-    case Step::Kind::kFreshModeToInitialize:
-    case Step::Kind::kFreshModeToRetract:
-      return ArmCall::kReadStatus;
-    case Step::Kind::kReadCurrents:
-      return ArmCall::kReadCurrent;
-    case Step::Kind::kReadVelocities:
-      return ArmCall::kReadVelocity;
-    case Step::Kind::kTakeControl:
-      return ArmCall::kTakeControl;
-    case Step::Kind::kReleaseControl:
-      return ArmCall::kReleaseControl;
-    case Step::Kind::kErase:
-      return ArmCall::kErase;
-    case Step::Kind::kZeroAxes:
-    case Step::Kind::kWriteAxes:
-      return ArmCall::kWriteAxes;
-    case Step::Kind::kRelease:
-    case Step::Kind::kReleaseThere:
-    case Step::Kind::kModeRelease:
-      return ArmCall::kReleaseStick;
-    case Step::Kind::kPress:
-      return ArmCall::kPressHome;
-    case Step::Kind::kWriteTarget:
-      return ArmCall::kWriteTarget;
-    case Step::Kind::kSelect: {
-      const bool is_angular = job_->mode == Mode::kAxis1to3 || job_->mode == Mode::kAxis4to6;
-      return is_angular ? ArmCall::kSelectAngular : ArmCall::kSelectCartesian;
-    }
-    default:
-      return std::nullopt;
-  }
-}
-
-Duration Worker::duration(Step step) const noexcept {
-  if (step.kind == Step::Kind::kPause) return milliseconds(step.value);
-  const auto call = call_of(step);
-  if (!call) return {};
-  return call == ArmCall::kOpen ? pace::kOpen : call_time_;
-}
+void Worker::then_release_control() { asked_.emplace_back(Steps::kReleaseControl); }
 
 void Worker::carry_out(Step step) {
-  const auto call = call_of(step);
-  if (!call) return on_local(step);
-  arm_.attempt(*call) ? on_call(step) : on_failed_call(step);
+  const auto& row = *step.row;
+  value_ = step.value;
+  const bool works = !row.call || arm_.call(now_, *row.call, data_);
+  (this->*(works ? row.done : row.failed))();
 }
 
-void Worker::on_failed_call(Step step) {
-  switch (step.kind) {
-    case Step::Kind::kReadPose:
-      return;  // a warning in the server's log
-    case Step::Kind::kFindArm:
-      if (++attempts_ >= kStartAttempts) {
-        aborts_ = true;
-        return;
-      }
-      push(Step::Kind::kFindArm);
-      return push_pause(static_cast<std::uint16_t>(pace::kRetryAtStart / milliseconds(1)));
-    case Step::Kind::kOpen:
-      push(Step::Kind::kOpen);
-      return push_pause(kReopenPauseMs);
-    case Step::Kind::kReadVelocities:  // kinovazed.death.velocity
-    case Step::Kind::kSelect:          // kinovazed.death.mode-write
-      return give_up();
-    case Step::Kind::kFreshModeToRetract:  // kinovazed.death.retract-read
-    case Step::Kind::kModeRelease:         // kinovazed.death.mode-release
-      aborts_ = behaviour_.dies;
-      has_failed_ = true;
-      return;
-    case Step::Kind::kZeroAxes:      // kinovazed.stop.no-release
-    case Step::Kind::kReleaseThere:  // kinovazed.arm.silent-stop
-      steps_.pop_back();
-      has_failed_ = true;
-      return;
-    default:
-      has_failed_ = true;
-  }
+void Worker::pause() { next({Steps::kPause}); }
+
+void Worker::open_again() { next({Steps::kPauseBeforeOpening, Steps::kOpen}); }
+
+void Worker::begin_to_poll() { poll_before(Steps::kStarted); }
+
+Worker::Step Worker::tell(ArmEvent event) noexcept {
+  return {Steps::kPostEvent, static_cast<std::uint16_t>(event)};
 }
 
-void Worker::on_call(Step step) {
-  arm_.with_plant(now_, [&](auto& plant) {
-    switch (step.kind) {
-      case Step::Kind::kReadPose:
-        return take_pose(plant.read_pose());
-      case Step::Kind::kReadMode:
-        return take_mode(plant.mode());
-      case Step::Kind::kReadCurrents:
-        return check_current(plant.current_sum());
-      case Step::Kind::kFreshModeToInitialize:
-        movement_ = Movement::kInitializing;
-        if (plant.mode() == ArmMode::kNeverHomed) return push(Step::Kind::kPress);
-        return push_homing(mode_.value_or(ArmMode::kError), ArmEvent::kInitialized);
-      case Step::Kind::kFreshModeToRetract:
-        return push_retracting(plant.mode());
-      case Step::Kind::kTakeControl:
-        has_control_ = true;
-        return plant.take_control();
-      case Step::Kind::kReleaseControl:
-        has_control_ = false;
-        return plant.release_control();
-      case Step::Kind::kErase:
-        push_pause(kPauseMs);
-        return plant.erase();
-      case Step::Kind::kZeroAxes:
-        push_pause(kPauseMs);
-        return plant.move_stick({});
-      case Step::Kind::kRelease:
-      case Step::Kind::kReleaseThere:
-      case Step::Kind::kModeRelease:
-        push_pause(kPauseMs);
-        return plant.release_all();
-      case Step::Kind::kPress:
-        push_pause(kPauseMs);
-        return plant.press_home();
-      case Step::Kind::kWriteAxes:
-        return plant.move_stick(stick_of(job_->deflection));
-      case Step::Kind::kWriteTarget:
-        movement_ = Movement::kToTarget;
-        target_ = job_->target;
-        return plant.go_to(target_);
-      case Step::Kind::kSelect:
-        plant.select(call_of(step) == ArmCall::kSelectAngular ? Control::kAngular
-                                                              : Control::kCartesian);
-        // kinovazed.mode.guard: a second change within half a second is fatal.
-        if (job_->mode != Mode::kNoMode && mode_set_ &&
-            now_ - *mode_set_ < behaviour_.mode_settles && behaviour_.dies) {
-          die();
-        }
-        return;
-      case Step::Kind::kFindArm:
-        push(Step::Kind::kStarted);
-        return push_poll();
-      case Step::Kind::kOpen:
-        return forget_arm();
-      default:
-        return;
-    }
-  });
+void Worker::post_event() {
+  post({.kind = Job::Kind::kEvent, .event = static_cast<ArmEvent>(value_)}, now_);
 }
 
-void Worker::on_local(Step step) {
-  switch (step.kind) {
-    case Step::Kind::kPostEvent:
-      return post({.kind = Job::Kind::kEvent, .event = static_cast<ArmEvent>(step.value)}, now_);
-    case Step::Kind::kRepair:
-      if (has_failed_) repair();
-      return;
-    case Step::Kind::kRepaired:
-      for (std::uint16_t i = 0; i < step.value; ++i) push_event(ArmEvent::kReconnected);
-      if (!has_control_) return;
-      push_stop();
-      return push(Step::Kind::kTakeControl);
-    case Step::Kind::kModeIsSet:
-      joystick_mode_ = job_->mode;
-      if (joystick_mode_ == Mode::kNoMode) return push_event(ArmEvent::kNoModeChanged);
-      mode_set_ = now_;
-      is_settling_ = true;
-      return;
-    case Step::Kind::kStarted:
-      is_started_ = true;
-      poll_due_ = now_ + pace::kPoll;
-      return;
-    default:
-      return;
-  }
+void Worker::poll_before(Step step) {
+  using S = Steps;
+  next({S::kReadPose, S::kReadMode, S::kReadCurrents, S::kReadVelocities, step});
 }
 
-void Worker::push_homing(ArmMode mode, ArmEvent when_there) {
-  switch (mode) {
-    case ArmMode::kFoldedToReady:
-      push(Step::Kind::kPress);
-      push(Step::Kind::kRelease);
-      push_pause(kLongPressMs);
-      return push(Step::Kind::kPress);
+void Worker::search_again() {
+  aborts_ = ++attempts_ >= kStartAttempts;
+  if (!aborts_) next({Steps::kPauseBeforeSearch, Steps::kFindArm});
+}
+
+void Worker::note_start() noexcept {
+  is_started_ = true;
+  poll_due_ = now_ + pace::kPoll;
+}
+
+void Worker::initialize() {
+  movement_ = Movement::kInitializing;
+  if (data_.mode == ArmMode::kNeverHomed) return next({Steps::kPress});
+  home(ArmEvent::kInitialized);
+}
+
+/// From the mode of the last poll.
+void Worker::home(ArmEvent when_there) {
+  using S = Steps;
+  switch (mode_.value_or(ArmMode::kError)) {
+    case ArmMode::kFoldedToReady:  // the arm overlooks a short press
+      return next({S::kPress, S::kLongPress, S::kRelease, S::kPress});
     case ArmMode::kToReady:
     case ArmMode::kReadyToFolded:
     case ArmMode::kFolded:
     case ArmMode::kElsewhere:
     case ArmMode::kNeverHomed:
-      return push(Step::Kind::kPress);
+      return next({S::kPress});
     case ArmMode::kError:
       has_failed_ = true;
       return;
     default:
       movement_ = Movement::kNone;
-      return push_event(when_there);
+      return next({tell(when_there)});
   }
 }
 
-void Worker::push_retracting(ArmMode mode) {
+void Worker::retract() {
+  using S = Steps;
   movement_ = Movement::kRetracting;
-  switch (mode) {
+  switch (data_.mode) {
     case ArmMode::kReadyToFolded:
-      push(Step::Kind::kPress);
-      push(Step::Kind::kRelease);
-      return push(Step::Kind::kPress);
+      return next({S::kPress, S::kRelease, S::kPress});
     case ArmMode::kReady:
     case ArmMode::kFoldedToReady:
-      return push(Step::Kind::kPress);
+      return next({S::kPress});
     case ArmMode::kToReady:
     case ArmMode::kElsewhere:
     case ArmMode::kNeverHomed:
       movement_ = Movement::kHomingToRetract;
-      return push(Step::Kind::kPress);
+      return next({S::kPress});
     case ArmMode::kError:
       has_failed_ = true;
       return;
     default:
       movement_ = Movement::kNone;
-      return push_event(ArmEvent::kRetractionReached);
+      return next({tell(ArmEvent::kRetractionReached)});
   }
 }
 
-void Worker::take_pose(const Pose& pose) {
-  if (!is_in_workspace(pose)) return;
-  const bool is_new = !has_pose_ || has_changed(pose_, pose);
-  if (is_new) pose_ = pose;
+void Worker::take_pose() {
+  if (!is_in_workspace(data_.pose)) return;
+  const bool is_new = !has_pose_ || has_changed(pose_, data_.pose);
+  if (is_new) pose_ = data_.pose;
   has_pose_ = true;
   if (!is_new && behaviour_.needs_change_to_reach) return;
   if (movement_ != Movement::kToTarget || !has_reached(pose_, target_, behaviour_.reach)) return;
   movement_ = Movement::kNone;
-  push_event(ArmEvent::kPointReached);
-  push_pause(kPauseMs);
+  next({Steps::kPause, tell(ArmEvent::kPointReached)});
 }
 
-void Worker::take_mode(ArmMode mode) {
+void Worker::take_mode() {
+  using S = Steps;
   check_settling();
+  const auto mode = data_.mode;
   if (mode_ == mode) return;
   mode_ = mode;
   const auto arrive = [this](ArmEvent event) {
     movement_ = Movement::kNone;
-    push_event(event);
-    push(Step::Kind::kReleaseThere);
+    next({S::kReleaseThere, tell(event)});
   };
   const bool is_ready = mode == ArmMode::kReady;
   const bool is_folded = mode == ArmMode::kFolded;
   if (is_ready && movement_ == Movement::kHoming) return arrive(ArmEvent::kHomeReached);
   if (is_ready && movement_ == Movement::kInitializing) return arrive(ArmEvent::kInitialized);
   if (is_ready && movement_ == Movement::kHomingToRetract) {
-    push(Step::Kind::kFreshModeToRetract);
-    return push(Step::Kind::kReleaseThere);
+    return next({S::kReleaseThere, S::kFreshModeToRetract});
   }
   if (is_folded && movement_ == Movement::kRetracting) return arrive(ArmEvent::kRetractionReached);
   if (is_folded && movement_ == Movement::kInitializing) {
     // kinovazed.retract.while-initializing
     if (behaviour_.sticks_when_folded) return arrive(ArmEvent::kRetractionReached);
-    push(Step::Kind::kPress);
-    push(Step::Kind::kReleaseThere);
+    next({S::kReleaseThere, S::kPress});
   }
 }
 
 void Worker::check_settling() {
   if (!is_settling_ || now_ - *mode_set_ < behaviour_.mode_settles) return;
   is_settling_ = false;
-  push_event(ArmEvent::kModeChanged);
+  next({tell(ArmEvent::kModeChanged)});
 }
 
-void Worker::check_current(float sum) {
-  if (sum > kHighestCurrent) give_up();  // kinovazed.death.current
+/// kinovazed.mode.guard: a second change within half a second is fatal.
+void Worker::guard_mode() noexcept {
+  const bool is_too_soon = mode_set_ && now_ - *mode_set_ < behaviour_.mode_settles;
+  if (is_too_soon && job_->mode != Mode::kNoMode && behaviour_.dies) die();
+}
+
+void Worker::note_mode() {
+  joystick_mode_ = job_->mode;
+  if (joystick_mode_ == Mode::kNoMode) return next({tell(ArmEvent::kNoModeChanged)});
+  mode_set_ = now_;
+  is_settling_ = true;
+}
+
+void Worker::take_current() noexcept {
+  if (data_.current_sum > kHighestCurrent) give_up();  // kinovazed.death.current
 }
 
 /// A failure inside a repair makes a repair inside a repair; each tells that it is over.
 void Worker::repair() {
-  const bool is_nested = !steps_.empty() && steps_.back().kind == Step::Kind::kRepaired;
-  if (is_nested) {
-    auto& times = steps_.back().value;
-    times = static_cast<std::uint16_t>(std::min(times + 1, 99));
-  } else {
-    push(Step::Kind::kRepaired, 1);
-  }
-  push(Step::Kind::kRepair);
-  push_poll();
-  push(Step::Kind::kOpen);
+  using S = Steps;
+  if (!has_failed_) return;
+  if (steps_.empty() || steps_.back().row != &S::kRepaired) next({{S::kRepaired, 0}});
+  auto& times = steps_.back().value;
+  times = static_cast<std::uint16_t>(std::min(times + 1, 99));
+  poll_before(S::kRepair);
+  next({S::kOpen});
+}
+
+void Worker::note_target() noexcept {
+  movement_ = Movement::kToTarget;
+  target_ = data_.target;
+}
+
+void Worker::tell_of_repairs() {
+  for (int i = 0; i < value_; ++i) next({tell(ArmEvent::kReconnected)});
+  if (!has_control_) return;
+  next(Steps::kStop);
+  next({Steps::kTakeControl});
 }
 
 void Worker::forget_arm() {

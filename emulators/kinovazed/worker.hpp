@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <deque>
+#include <initializer_list>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -103,37 +105,18 @@ class Worker {
   [[nodiscard]] const ArmPort& arm() const noexcept { return arm_; }
 
  private:
+  /// What jobs are made of. `Steps` in worker.cpp has a row for each.
+  struct Steps;
+  struct Row;
   struct Step {
-    enum class Kind : std::uint8_t {
-      kFindArm,
-      kReadPose,
-      kReadMode,
-      kReadCurrents,
-      kReadVelocities,
-      kRepair,
-      kOpen,
-      kRepaired,
-      kTakeControl,
-      kReleaseControl,
-      kErase,
-      kZeroAxes,
-      kRelease,
-      kReleaseThere,  ///< at the end of a motion; the step after it counts only if it works
-      kPress,
-      kFreshModeToInitialize,
-      kFreshModeToRetract,
-      kSelect,
-      kModeRelease,
-      kModeIsSet,
-      kWriteAxes,
-      kWriteTarget,
-      kPause,
-      kPostEvent,
-      kStarted,
-    };
-    Kind kind{};
-    std::uint16_t value{};  ///< milliseconds, an `ArmEvent`, or how often
+    // NOLINTNEXTLINE(google-explicit-constructor): a list of steps is one of rows
+    constexpr Step(const Row& row_of, std::uint16_t with = 0) noexcept
+        : row{&row_of}, value{with} {}
+
+    const Row* row;
+    std::uint16_t value;  ///< an `ArmEvent`, or how often
   };
+
   /// What the server believes the arm to be doing.
   enum class Movement : std::uint8_t {
     kNone,
@@ -148,30 +131,42 @@ class Worker {
   void begin(const Job& job);
   [[nodiscard]] Report finish_job();
   void carry_out(Step step);
-  [[nodiscard]] Duration duration(Step step) const noexcept;
-  [[nodiscard]] std::optional<ArmCall> call_of(Step step) const noexcept;
-  void on_failed_call(Step step);
-  void on_call(Step step);
-  void on_local(Step step);
 
-  // Steps in reverse: what is pushed last comes first.
-  void push(Step::Kind kind, std::uint16_t value = 0) { steps_.push_back({kind, value}); }
-  void push_pause(std::uint16_t milliseconds) { push(Step::Kind::kPause, milliseconds); }
-  void push_event(ArmEvent event) {
-    push(Step::Kind::kPostEvent, static_cast<std::uint16_t>(event));
+  /// Puts steps in front of those that are still to come, in this order.
+  void next(std::initializer_list<Step> steps) {
+    steps_.insert(steps_.end(), std::rbegin(steps), std::rend(steps));
   }
-  void push_stop();
-  void push_poll();
-  void push_homing(ArmMode mode, ArmEvent when_there);
-  void push_retracting(ArmMode mode);
-
-  void take_pose(const Pose& pose);
-  void take_mode(ArmMode mode);
+  void poll_before(Step step);
+  [[nodiscard]] static Step tell(ArmEvent event) noexcept;
+  void home(ArmEvent when_there);
   void check_settling();
-  void check_current(float sum);
-  void repair();
   void forget_arm();
-  void give_up();
+
+  // What follows steps.
+  void go_on() noexcept {}
+  void pause();
+  void fail() noexcept { has_failed_ = true; }  ///< the next poll repairs
+  void fail_without_next();
+  void fail_or_abort() noexcept;
+  void give_up() noexcept;
+  void begin_to_poll();
+  void search_again();
+  void open_again();
+  void note_start() noexcept;
+  void note_control() noexcept { has_control_ = true; }
+  void note_no_control() noexcept { has_control_ = false; }
+  void note_mode();
+  void note_target() noexcept;
+  void guard_mode() noexcept;
+  void take_pose();
+  void take_mode();
+  void take_current() noexcept;
+  void initialize();
+  void retract();
+  void repair();
+  void tell_of_repairs();
+  void post_event();
+
   [[nodiscard]] Stick stick_of(const Deflection& deflection) const noexcept;
   [[nodiscard]] Deflection bounded(Deflection deflection) const noexcept;
 
@@ -187,9 +182,11 @@ class Worker {
 
   std::deque<Job> jobs_;
   std::optional<Job> job_;
-  std::vector<Step> steps_;
+  std::vector<Step> steps_;  ///< the last one comes first
   std::vector<Step> asked_;  ///< by `then_*`, in order
   std::optional<Step> step_;
+  std::uint16_t value_{};  ///< of the last step
+  ArmData data_;           ///< of its call
   Instant step_ends_{};
   Instant poll_due_{};
   int attempts_ = 0;
