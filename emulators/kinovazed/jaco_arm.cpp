@@ -8,8 +8,6 @@
 namespace armjig::kinovazed::emulation {
 namespace {
 
-constexpr double kArmSpeed = 36;    // degrees/s, joints 1 to 3
-constexpr double kWristSpeed = 48;  // degrees/s, joints 4 to 6
 constexpr float kStandingCurrent = 0.3F;
 constexpr float kMovingCurrent = 2.5F;
 
@@ -92,13 +90,12 @@ void JacoArm::go_to(const Pose& target) noexcept {
 }
 
 void JacoArm::turn_joints(double elapsed) noexcept {
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const bool is_arm = i < 3;
-    const double axis = is_arm ? stick_.translation[i] : stick_.wrist[i - 3];
-    joints_[i] += std::clamp(axis, -1.0, 1.0) * (is_arm ? kArmSpeed : kWristSpeed) * elapsed;
+  std::array<double, 6> speeds{};
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    const double axis = i < 3 ? stick_.translation[i] : stick_.wrist[i - 3];
+    speeds[i] = std::clamp(axis, -1.0, 1.0);
   }
-  joints_[1] = std::clamp(joints_[1], kJoint2Range.least, kJoint2Range.most);
-  joints_[2] = std::clamp(joints_[2], kJoint3Range.least, kJoint3Range.most);
+  joints_ = turned(joints_, speeds, elapsed);
   body_.set_pose(forward(joints_));
 }
 

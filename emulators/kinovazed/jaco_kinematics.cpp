@@ -7,74 +7,33 @@
 #include <numbers>
 #include <utility>
 
+#include "harness/arm/models.hpp"
+
 namespace armjig::kinovazed::emulation {
 namespace {
 
-using Matrix = std::array<std::array<double, 4>, 3>;  // rotation and translation
 using Vector6 = std::array<double, 6>;
 using Matrix6 = std::array<Vector6, 6>;
 
 constexpr double kRadian = std::numbers::pi / 180;
 
-/// One link: Rz(theta) Tz(d) Tx(a) Rx(alpha), theta = sign * Q + offset.
-struct Link {
-  double alpha;
-  double a;
-  double d;
-  double sign;
-  double offset;
-};
-constexpr double kQuarter = std::numbers::pi / 2;
-constexpr std::array<Link, 6> kLinks{{{kQuarter, 0, 0.2755, -1, 0},
-                                      {std::numbers::pi, 0.41, 0, 1, -kQuarter},
-                                      {kQuarter, 0, -0.0098, 1, kQuarter},
-                                      {60 * kRadian, 0, -0.2500817, 1, 0},
-                                      {60 * kRadian, 0, -0.0855633, 1, -std::numbers::pi},
-                                      {std::numbers::pi, 0, -0.2027817, 1, kQuarter}}};
-
-Matrix product(const Matrix& left, const Matrix& right) noexcept {
-  Matrix result{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      result[i][j] = j == 3 ? left[i][3] : 0;
-      for (std::size_t k = 0; k < 3; ++k) result[i][j] += left[i][k] * right[k][j];
-    }
-  }
-  return result;
+const arm::Arm& model() noexcept {
+  static const auto kModel = arm::jaco(arm::JacoVariant::kJaco2Curved);
+  return kModel;
 }
 
-Matrix link_matrix(const Link& link, double angle) noexcept {
-  const double theta = link.sign * angle * kRadian + link.offset;
-  const double ct = std::cos(theta);
-  const double st = std::sin(theta);
-  const double ca = std::cos(link.alpha);
-  const double sa = std::sin(link.alpha);
-  return {{{ct, -st * ca, st * sa, link.a * ct},
-           {st, ct * ca, -ct * sa, link.a * st},
-           {0, sa, ca, link.d}}};
-}
-
-Matrix hand(const JointAngles& angles) noexcept {
-  auto matrix = link_matrix(kLinks[0], angles[0]);
-  for (std::size_t i = 1; i < kLinks.size(); ++i) {
-    matrix = product(matrix, link_matrix(kLinks[i], angles[i]));
-  }
-  return matrix;
+arm::Pose hand(JointAngles angles) noexcept {
+  for (double& angle : angles) angle *= kRadian;
+  return arm::forward(model(), angles);
 }
 
 /// How far `is` from `wanted`: metres, then a rotation vector in radians (exact for small ones).
-Vector6 error(const Matrix& wanted, const Matrix& is) noexcept {
-  Vector6 result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = wanted[i][3] - is[i][3];
-  for (std::size_t column = 0; column < 3; ++column) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto j = (i + 1) % 3;
-      const auto k = (i + 2) % 3;
-      result[3 + i] +=
-          0.5 * (is[j][column] * wanted[k][column] - is[k][column] * wanted[j][column]);
-    }
-  }
-  return result;
+Vector6 error(const arm::Pose& wanted, const arm::Pose& is) noexcept {
+  const auto way = wanted.position - is.position;
+  const auto turn = 0.5 * (cross(is.rotation.x_axis(), wanted.rotation.x_axis()) +
+                           cross(is.rotation.y_axis(), wanted.rotation.y_axis()) +
+                           cross(is.rotation.z_axis(), wanted.rotation.z_axis()));
+  return {way.x, way.y, way.z, turn.x, turn.y, turn.z};
 }
 
 double norm(const Vector6& vector) noexcept {
@@ -137,33 +96,39 @@ Vector6 step(const JointAngles& angles, const Vector6& wrong) noexcept {
   return result;
 }
 
-bool is_in_range(const JointAngles& angles) noexcept {
-  const auto within = [](double angle, const JointRange& range) {
-    const double turned = angle - 360 * std::floor(angle / 360);
-    return turned >= range.least && turned <= range.most;
-  };
-  return within(angles[1], kJoint2Range) && within(angles[2], kJoint3Range);
+bool is_in_range(JointAngles angles) noexcept {
+  for (const std::size_t j : {1U, 2U}) angles[j] -= 360 * std::floor(angles[j] / 360);
+  for (double& angle : angles) angle *= kRadian;
+  return arm::first_outside(model(), angles) == angles.size();
 }
 
 }  // namespace
 
 Pose forward(const JointAngles& angles) noexcept {
-  const auto matrix = hand(angles);
-  Frame frame;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) frame.rotation[i][j] = static_cast<float>(matrix[i][j]);
-    frame.translation[i] = static_cast<float>(matrix[i][3]);
+  const auto [rotation, position] = hand(angles);
+  const auto single = [](const arm::Vector3& v) {
+    return std::array{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  };
+  const auto& rows = rotation.rows;
+  return pose_of({{single(rows[0]), single(rows[1]), single(rows[2])}, single(position)});
+}
+
+JointAngles turned(JointAngles angles, const std::array<double, 6>& speeds,
+                   double seconds) noexcept {
+  for (std::size_t j = 0; j < angles.size(); ++j) {
+    const auto& joint = model().joints[j];
+    angles[j] = std::clamp(angles[j] + speeds[j] * joint.max_speed / kRadian * seconds,
+                           joint.lower / kRadian, joint.upper / kRadian);
   }
-  return pose_of(frame);
+  return angles;
 }
 
 std::optional<JointAngles> solve(const Pose& pose, const JointAngles& seed) noexcept {
   const auto frame = frame_of(pose);
-  Matrix wanted{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) wanted[i][j] = frame.rotation[i][j];
-    wanted[i][3] = frame.translation[i];
-  }
+  const auto vector = [](const std::array<float, 3>& v) { return arm::Vector3{v[0], v[1], v[2]}; };
+  const auto& rows = frame.rotation;
+  const arm::Pose wanted{{{vector(rows[0]), vector(rows[1]), vector(rows[2])}},
+                         vector(frame.translation)};
   constexpr int kSteps = 200;
   constexpr double kClose = 1e-5;
   // Other elbows and wrists, should the way from the seed not lead there.

@@ -50,7 +50,7 @@ constexpr Room kRooms[] = {
     {"emulators/faults", "harness/core harness/wire"},
     {"emulators/demo", "harness/core harness/wire emulators/faults"},
     {"emulators/i2c", "harness/core"},
-    {"emulators/kinovazed", "harness/core harness/wire emulators/faults"},
+    {"emulators/kinovazed", "harness/core harness/wire harness/arm emulators/faults"},
     {"emulators/morap", "harness/core harness/wire emulators/faults emulators/i2c"},
     {"emulators/parol6", "harness/core harness/wire emulators/faults"},
     {"emulators/replay",
