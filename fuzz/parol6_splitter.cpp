@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
+#include "emulators/parol6/firmware_receiver.hpp"
 #include "fuzz/require.hpp"
 #include "harness/wire/parol6/dissector.hpp"
-#include "harness/wire/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/frame.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 
@@ -22,8 +22,8 @@ namespace armjig::fuzz {
 namespace {
 
 using parol6::CheckPolicy;
-using parol6::FirmwareReceiver;
 using parol6::Splitter;
+using parol6::emulation::FirmwareReceiver;
 
 /// Feeds `in` in pieces of at most `piece` bytes.
 template <class Feed>

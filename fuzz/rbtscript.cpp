@@ -56,7 +56,7 @@ void check_program(std::string_view text, Dialect dialect) {
   require(script::format(*formatted, dialect) == *formatted, "formatting twice changes nothing");
   (void)script::check(*program);
   if (!is_short(*program)) return;
-  const auto schedule = script::schedule(*program, {}, parol6::planning::standby());
+  const auto schedule = script::schedule(*program, {}, parol6::kStandby);
   if (!schedule) return check_errors({schedule.error()}, text);
   require(schedule->statements.size() == schedule->frames.size(), "each frame has its line");
   require(!script::check(*program, *schedule).empty(), "a schedule has a length");

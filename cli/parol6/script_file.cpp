@@ -127,7 +127,7 @@ Outcome<Planning> parse_planning(const PlanningOptions& options) {
   if (options.from == "power-up") {
     settings.planner.limits = parol6::planning::LimitCheck::kIgnored;
   } else if (options.from == "standby") {
-    planning.start = parol6::planning::standby();
+    planning.start = parol6::kStandby;
   } else if (auto start = parse_places(options.from)) {
     planning.start = *start;
   } else {

@@ -10,7 +10,7 @@
 
 #include "conformance/stream_bench.hpp"
 #include "harness/core/time.hpp"
-#include "harness/wire/parol6/frame.hpp"
+#include "harness/wire/parol6/joints.hpp"
 
 namespace armjig::parol6::conformance {
 
@@ -22,10 +22,6 @@ enum Start : std::uint8_t {
   kEnabled,    ///< enabled, standing, speeds 0, outputs off; homed or not, but where it was homed
                ///< if it may be: cases here begin to home, and must not meet a switch
 };
-
-/// Where homing leaves the counters.
-inline constexpr std::array<Steps, kJointCount> kStandby{Steps{10240}, Steps{-32000}, Steps{57905},
-                                                         Steps{0},     Steps{0},      Steps{32000}};
 
 /// A telemetry frame and when it came. The board made it between `asked` and `received`. Fields are
 /// judged by the bytes that came.
@@ -120,7 +116,6 @@ class BoardBench final : public StreamBench {
   /// is also where a guard would not let it pass.
   void spoil();
 
-  static constexpr Duration kFramePeriod = std::chrono::milliseconds{10};
   /// Longer than two passes of any board's loop.
   static constexpr Duration kPassTime = std::chrono::milliseconds{2};
 

@@ -15,6 +15,7 @@
 #include "conformance/parol6/board_bench.hpp"
 #include "conformance/parol6/chapters.hpp"
 #include "conformance/parol6/homing_record.hpp"
+#include "conformance/parol6/laws.hpp"
 #include "conformance/parol6/motion.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/wire/parol6/readings.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "conformance/parol6/board_bench.hpp"
+#include "conformance/parol6/laws.hpp"
 
 namespace armjig::parol6::conformance {
 
@@ -30,6 +31,13 @@ class HomingRecord {
  private:
   const std::vector<Answer>& log_;
 };
+
+/// What a run sets in its first pass.
+[[nodiscard]] constexpr Speeds seek_speeds() noexcept {
+  Speeds speeds{};
+  for (std::size_t j = 0; j < kJointCount; ++j) speeds[j] = kHoming[j].seek;
+  return speeds;
+}
 
 inline constexpr std::uint8_t kNoneHomed = 0x03;
 inline constexpr std::uint8_t kFirstThreeHomed = 0xE3;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "conformance/parol6/laws.hpp"
+
 namespace armjig::parol6::conformance {
 namespace {
 
@@ -41,7 +43,7 @@ void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, 
   if (board.is_over()) return;
   const auto shortest = seconds(stretch.after.asked - stretch.before.received);
   const auto longest = seconds(stretch.after.received - stretch.before.asked);
-  const auto interval = std::floor(1e6 / std::abs(speed)) * 1e-6;
+  const auto interval = step_interval(speed);
   const auto least = shortest * (1 - kClockError) / (interval + seconds(longest_loop(board))) - 1.0;
   const auto most = longest * (1 + kClockError) / interval + 1.0;
   const auto made = steps(stretch, joint) * (speed < 0 ? -1 : 1);

@@ -2,6 +2,7 @@
 #include "emulators/parol6/board.hpp"
 
 #include <algorithm>
+#include <ratio>
 
 #include "harness/wire/parol6/joint_bounds.hpp"
 #include "harness/wire/parol6/readings.hpp"
@@ -15,8 +16,6 @@ constexpr std::array<StepsPerSecond2, kJointCount> kPowerUpAcceleration{
 
 constexpr std::int64_t kDemoSleepUs = 2'000'000;
 constexpr std::int64_t kStartUpUs = 740'000;
-
-constexpr Milliamperes kMaxGripperCurrent{1300};
 
 // Telemetry that the firmware never computes.
 constexpr std::uint8_t kSpareFlags = 0x03;
@@ -34,7 +33,7 @@ std::array<Joint, kJointCount> joints_at_power_up(const Plant& plant, const Boar
   for (std::size_t j = 0; j < kJointCount; ++j) {
     joints[j].axis = plant.axes[j];
     joints[j].pressed_level = figures.homing[j].pressed_level;
-    joints[j].stepper.set_max_speed(profile.bounds_speeds ? to_rate(kJointBounds[j].max_speed)
+    joints[j].stepper.set_max_speed(profile.bounds_speeds ? to_rate(kJoints[j].max_speed)
                                                           : figures.max_speed);
     joints[j].stepper.set_acceleration(kPowerUpAcceleration[j]);
     joints[j].stepper.set_speed(StepRate{});
@@ -113,8 +112,10 @@ void Board::set_plant(const Plant& plant) noexcept {
 }
 
 std::uint32_t Board::timer(std::int64_t pass) const noexcept {
-  // 703,125 Hz is 45 ticks in 64 us.
-  const auto ticks = static_cast<std::uint64_t>(pass - start_) * 45 / 64;
+  using TimerTicks = std::chrono::duration<std::int64_t, std::ratio<1, kTicksPerSecond>>;
+  const auto since_start = std::chrono::microseconds{pass - start_};
+  const auto ticks =
+      static_cast<std::uint64_t>(std::chrono::duration_cast<TimerTicks>(since_start).count());
   const auto mask = (std::uint64_t{1} << timing_.timer_bits) - 1;
   return static_cast<std::uint32_t>((timing_.timer_at_start.value + ticks) & mask);
 }
@@ -309,8 +310,11 @@ void Board::go_to(Micros now) noexcept {
 }
 
 bool Board::is_held_at_bound(std::size_t joint, StepsPerSecond speed) const noexcept {
-  return profile_.stops_at_bounds && are_all_homed(homing_.homed()) &&
-         kJointBounds[joint].forbid(joints_[joint].position(), speed);
+  if (!profile_.stops_at_bounds || !are_all_homed(homing_.homed()) || speed.value == 0)
+    return false;
+  const auto [lower, upper] = kJointBounds[joint];
+  const auto position = joints_[joint].position();
+  return speed.value > 0 ? position >= upper : position <= lower;
 }
 
 bool Board::is_stopped_by_hand() const noexcept {
@@ -397,9 +401,7 @@ void Board::accept(std::int64_t pass, CommandReceiver::Body body) {
 /// together with a calibration or a clear-error counts as sent although it was not
 /// (parol6.gripper.forgotten-set-point).
 void Board::send_gripper_frame(std::int64_t pass) {
-  constexpr std::uint8_t kMove = 0;
-  constexpr std::uint8_t kCalibrate = 1;
-  constexpr std::uint8_t kClearError = 2;
+  using namespace gripper_mode;
   const auto& wanted = latched_.gripper;
   const auto is_same = [](GripperSetPoint a, const GripperSetPoint& b) {
     a.mode = b.mode;
@@ -450,7 +452,7 @@ void Board::send_telemetry(std::int64_t pass, std::uint16_t interval) {
   }
   frame.homed = homing_.homed() | kSpareFlags;
   frame.io = level_flag(inputs_.in1, io_flag::kIn1) | level_flag(inputs_.in2, io_flag::kIn2) |
-             (latched_.in_out & (io_flag::kOut1 | io_flag::kOut2)) |
+             (latched_.in_out & io_flag::kOutputs) |
              level_flag(inputs_.estop, io_flag::kEstopReleased) | io_flag::kSpare;
   frame.temperature_error = kSpareFlags;
   if (profile_.reports_position_errors) position_errors_ |= joints_out_of_range();
@@ -477,7 +479,9 @@ std::uint8_t Board::joints_out_of_range() const noexcept {
   if (!are_all_homed(homing_.homed())) return 0;
   std::uint8_t flags = 0;
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    if (!kJointBounds[j].contain(joints_[j].position())) flags |= flag(j);
+    const auto [lower, upper] = kJointBounds[j];
+    const auto position = joints_[j].position();
+    if (position < lower || position > upper) flags |= flag(j);
   }
   return flags;
 }

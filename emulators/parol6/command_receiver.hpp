@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
+#include "emulators/parol6/firmware_receiver.hpp"
 #include "emulators/parol6/profile.hpp"
 #include "harness/core/bytes.hpp"
-#include "harness/wire/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/frame.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 

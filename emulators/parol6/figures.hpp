@@ -5,7 +5,7 @@
 
 #include "emulators/parol6/homing.hpp"
 #include "harness/core/quantity.hpp"
-#include "harness/wire/parol6/frame.hpp"
+#include "harness/wire/parol6/joints.hpp"
 
 namespace armjig::parol6::emulation {
 
@@ -21,13 +21,13 @@ struct DemoParameters {
 /// The numbers that a board is built with; the defaults are those of the shipped one.
 struct BoardFigures {
   HomingTable homing = kHomingTable;
-  StepRate max_speed{50'000};  ///< of every joint at power-up (parol6.jog.clamp)
-  std::array<DemoParameters, kJointCount> demo{{{6000, Steps{6179}, Steps{10240}},
-                                                {4000, Steps{-22222}, Steps{-32000}},
-                                                {3500, Steps{49812}, Steps{57905}},
-                                                {3500, Steps{0}, Steps{0}},
-                                                {3500, Steps{4059}, Steps{0}},
-                                                {7500, Steps{46075}, Steps{32000}}}};
+  StepRate max_speed = to_rate(kMaxStepRate);  ///< of every joint at power-up (parol6.jog.clamp)
+  std::array<DemoParameters, kJointCount> demo{{{6000, Steps{6179}, kStandby[0]},
+                                                {4000, Steps{-22222}, kStandby[1]},
+                                                {3500, Steps{49812}, kStandby[2]},
+                                                {3500, Steps{0}, kStandby[3]},
+                                                {3500, Steps{4059}, kStandby[4]},
+                                                {7500, Steps{46075}, kStandby[5]}}};
 
   friend bool operator==(const BoardFigures&, const BoardFigures&) = default;
 };

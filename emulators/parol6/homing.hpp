@@ -6,7 +6,7 @@
 
 #include "emulators/parol6/joint.hpp"
 #include "harness/core/quantity.hpp"
-#include "harness/wire/parol6/frame.hpp"
+#include "harness/wire/parol6/joints.hpp"
 
 namespace armjig::parol6::emulation {
 
@@ -30,17 +30,17 @@ using HomingTable = std::array<HomingParameters, kJointCount>;
 /// of J5.
 inline constexpr HomingTable kHomingTable{{
     {Level::kLow, StepRate{-2050}, Steps{850}, StepRate{-2050}, StepRate{-750},
-     StepsPerSecond2{4500}, Steps{13500}, Steps{10240}},
+     StepsPerSecond2{4500}, Steps{13500}, kStandby[0]},
     {Level::kHigh, StepRate{-2550}, Steps{1050}, StepRate{2050}, StepRate{-750},
-     StepsPerSecond2{3000}, Steps{19588}, Steps{-32000}},
+     StepsPerSecond2{3000}, Steps{19588}, kStandby[1]},
     {Level::kHigh, StepRate{-2550}, Steps{1050}, StepRate{2050}, StepRate{-750},
-     StepsPerSecond2{5000}, Steps{23020}, Steps{57905}},
+     StepsPerSecond2{5000}, Steps{23020}, kStandby[2]},
     {Level::kLow, StepRate{5550}, Steps{-1550}, StepRate{-4050}, StepRate{4050},
-     StepsPerSecond2{5500}, Steps{-10200}, Steps{0}},
+     StepsPerSecond2{5500}, Steps{-10200}, kStandby[3]},
     {Level::kHigh, StepRate{-5050}, Steps{1550}, StepRate{4050}, StepRate{-4050},
-     StepsPerSecond2{5500}, Steps{8900}, Steps{0}},
+     StepsPerSecond2{5500}, Steps{8900}, kStandby[4]},
     {Level::kLow, StepRate{-9550}, Steps{1550}, StepRate{4050}, StepRate{-8050},
-     StepsPerSecond2{5500}, Steps{0}, Steps{32000}},
+     StepsPerSecond2{5500}, Steps{0}, kStandby[5]},
 }};
 inline constexpr Steps kParkingJ6{15900};
 inline constexpr StepsPerSecond2 kParkingAccelerationJ6{10500};

@@ -37,12 +37,11 @@ std::uint32_t Axis::steps_until(Level level, std::int32_t direction) const noexc
 
 Plant standard_plant() noexcept {
   Plant plant;
-  // Where the arm stands; J6 a little off, so that homing has something to do.
-  constexpr std::array<Steps, kJointCount> kPositions{Steps{10240}, Steps{-32000}, Steps{57905},
-                                                      Steps{0},     Steps{0},      Steps{33000}};
+  // The arm stands at its standby position, J6 a little off, so that homing has something to do.
+  constexpr Steps kBeside{1000};
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto& homing = kHomingTable[j];
-    plant.axes[j].position = kPositions[j];
+    plant.axes[j].position = kStandby[j] + (j + 1 == kJointCount ? kBeside : Steps{});
     plant.axes[j].limit = {
         .threshold = homing.standby - homing.standby_from_switch,
         .side = homing.seek_speed > StepRate{} ? LimitSwitch::Side::kAtOrAbove

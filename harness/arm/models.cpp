@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/arm/models.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+
+#include "harness/wire/parol6/joints.hpp"
 
 namespace armjig::arm {
 namespace {
@@ -27,13 +30,14 @@ void set_ranges(Arm& arm, std::span<const Range> ranges) {
   }
 }
 
-/// The hosts' limits; speeds are the commander's, 6500 to 22000 steps/s.
-constexpr std::array<Range, 6> kParol6Ranges{{{-123.046875, 123.046875, 6500 / 113.777778},
-                                              {-145.0088, -3.375, 18'000 / 355.555556},
-                                              {107.866, 287.8675, 20'000 / 321.693122},
-                                              {-105.46975, 105.46975, 22'000 / 71.111111},
-                                              {-90, 90, 22'000 / 71.111111},
-                                              {0, 360, 22'000 / 177.777778}}};
+/// The hosts' limits; speeds are the commander's.
+void set_parol6_ranges(Arm& arm) {
+  std::array<Range, parol6::kJointCount> ranges;
+  std::ranges::transform(parol6::kJoints, ranges.begin(), [](const parol6::Joint& joint) {
+    return Range{joint.lower.value, joint.upper.value, joint.speed(joint.max_speed).value};
+  });
+  set_ranges(arm, ranges);
+}
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr Range kEndless{-kForever, kForever, 48};
@@ -114,7 +118,7 @@ Arm parol6_commander() {
       DhRow{-0.17635, 0, -pi / 2},     DhRow{0, 0, pi / 2}, DhRow{-0.0628, -0.04525, pi},
   };
   auto arm = arm_from_dh("parol6", kRows);
-  set_ranges(arm, kParol6Ranges);
+  set_parol6_ranges(arm);
   return arm;
 }
 
@@ -134,7 +138,7 @@ Arm parol6_flange() {
     arm.joints.push_back({.name = "L" + std::to_string(arm.joint_count() + 1),
                           .origin = {rotation_x(origin.roll), origin.position}});
   }
-  set_ranges(arm, kParol6Ranges);
+  set_parol6_ranges(arm);
   return arm;
 }
 

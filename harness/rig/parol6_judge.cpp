@@ -8,16 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "harness/wire/parol6/firmware_receiver.hpp"
+#include "harness/rig/parol6_receiver.hpp"
 #include "harness/wire/parol6/go_to_way.hpp"
+#include "harness/wire/parol6/readings.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 #include "harness/wire/steps.hpp"
 
 namespace armjig::parol6::rig {
 namespace {
 
-constexpr std::uint8_t kAllHomed = 0xFC;
-constexpr std::uint8_t kOutputs = io_flag::kOut1 | io_flag::kOut2;
 /// So many frames without any answer, half a second at 100 Hz, and the arm counts as out of sight.
 constexpr int kOutOfSight = 50;
 
@@ -25,28 +24,16 @@ constexpr int kOutOfSight = 50;
 /// length of 0 takes 256 of these bytes, the last of them as a length, hence 85 more.
 constexpr std::size_t kFlushSize = 512;
 constexpr std::byte kFlush{0x55};
-/// A whole store of zeros that is not accepted, since it does not end well: the shipped board keeps
-/// there what earlier frames left, and shorter ones uncover it.
-constexpr std::size_t kStoreSize = 255;
 
+/// After the flush a whole store of zeros that is not accepted, since it does not end well: the
+/// shipped board keeps there what earlier frames left, and shorter ones uncover it.
 constexpr auto kOpening = [] {
-  std::array<std::byte, kFlushSize + kHeaderSize + kStoreSize> bytes{};
+  std::array<std::byte, kFlushSize + kHeaderSize + kLongestPayload> bytes{};
   std::fill_n(bytes.begin(), kFlushSize, kFlush);
   std::fill_n(bytes.begin() + kFlushSize, kStartSize, kStartByte);
-  bytes[kFlushSize + kStartSize] = std::byte{kStoreSize};
+  bytes[kFlushSize + kStartSize] = std::byte{kLongestPayload};
   return bytes;
 }();
-
-bool moves(Command command) noexcept {
-  return command == Command::kJog || command == Command::kGoTo || command == Command::kHome ||
-         command == Command::kDemo;
-}
-
-/// Idle does not.
-bool ends_homing(Command command) noexcept {
-  return command == Command::kEnable || command == Command::kDisable ||
-         command == Command::kClearError || command == Command::kJog || command == Command::kGoTo;
-}
 
 /// Where a go-to comes to rest: off its target, where the distance outweighs the commanded speed
 /// (parol6.goto.law).
@@ -57,24 +44,12 @@ Steps resting_place(Steps goal, StepsPerSecond feed) noexcept {
 /// Whether a gripper set-point does anything that the one in the frame before did not
 /// (parol6.gripper.one-frame).
 bool is_gripper_action(GripperSetPoint set_point, const GripperSetPoint& before) noexcept {
-  if (set_point.mode != 0) return true;
+  if (set_point.mode != gripper_mode::kMove) return true;
   set_point.mode = before.mode;
   return set_point != before;
 }
 
-bool is_homed(const TelemetryFrame& telemetry) noexcept {
-  return (telemetry.homed & kAllHomed) == kAllHomed;
-}
-
-bool is_estop_pressed(const TelemetryFrame& telemetry) noexcept {
-  return (telemetry.io & io_flag::kEstopReleased) == 0;
-}
-
-constexpr auto kTopSpeeds = [] {
-  GoToWay::Limits speeds{};
-  for (std::size_t j = 0; j < kJointCount; ++j) speeds[j] = kJointBounds[j].max_speed;
-  return speeds;
-}();
+constexpr GoToWay::Limits kTopSpeeds = of_joints(&Joint::max_speed);
 
 /// What a board does, as far as our writes and its answers tell.
 class Belief {
@@ -121,11 +96,9 @@ using Verdict = std::optional<Refusal>;
 
 /// Calls `accept` for each frame that the shipped board finds, until it refuses one.
 template <class Accept>
-Verdict for_each_frame(FirmwareReceiver& receiver, Bytes bytes, Accept accept) {
-  while (!bytes.empty()) {
-    const auto step = receiver.step(bytes);
-    bytes = bytes.subspan(step.used);
-    if (!step.accepted) continue;
+Verdict for_each_frame(ShippedReceiver& receiver, Bytes bytes, Accept accept) {
+  for (const auto byte : bytes) {
+    if (!receiver.take(byte)) continue;
     if (auto refusal = accept(decode_command(receiver.body()))) return refusal;
   }
   return std::nullopt;
@@ -222,7 +195,7 @@ class BoardJudge final : public Judge {
     frame.command = Command::kDisable;
     frame.speed = {};
     frame.check = kCheckHost;
-    frame.gripper.mode = 0;
+    frame.gripper.mode = gripper_mode::kMove;
     std::ranges::copy(encode(frame), stop_.begin() + kFlushSize);
   }
 
@@ -239,7 +212,7 @@ class BoardJudge final : public Judge {
     const auto needs = [&](Hazard hazard, std::string_view what) {
       return demand(hazard, permissions, what);
     };
-    if (((frame.in_out ^ before.in_out) & kOutputs) != 0) {
+    if (((frame.in_out ^ before.in_out) & io_flag::kOutputs) != 0) {
       if (auto refusal = needs(Hazard::kState, "switching an output")) return refusal;
     }
     if (is_gripper_action(frame.gripper, before.gripper)) {
@@ -287,9 +260,9 @@ class BoardJudge final : public Judge {
   [[nodiscard]] Verdict judge_jog(const CommandFrame& frame) const {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto speed = frame.speed[j];
-      if (std::abs(speed.value) > kJointBounds[j].max_jog.value) {
+      if (std::abs(speed.value) > kJoints[j].max_jog.value) {
         return Refusal{Hazard::kMove, fmt::format("j{} may jog at most at {} steps/s", j + 1,
-                                                  kJointBounds[j].max_jog.value)};
+                                                  kJoints[j].max_jog.value)};
       }
       if (is_arm_homed() && kJointBounds[j].forbid(telemetry_->position[j], speed)) {
         return Refusal{Hazard::kMove, fmt::format("j{} is at its bound", j + 1),
@@ -318,7 +291,7 @@ class BoardJudge final : public Judge {
     return Refusal{Hazard::kMove, fmt::format("j{} would {}, {} steps/s are allowed: send the way "
                                               "in smaller pieces",
                                               excess.joint + 1, describe(excess),
-                                              kJointBounds[excess.joint].max_speed.value)};
+                                              kJoints[excess.joint].max_speed.value)};
   }
 
   [[nodiscard]] std::optional<std::string> reason_to_stop() const {
@@ -339,7 +312,7 @@ class BoardJudge final : public Judge {
   }
 
   Instant now_{};
-  FirmwareReceiver receiver_;      ///< what the shipped board would make of the bytes
+  ShippedReceiver receiver_;       ///< what the shipped board would make of the bytes
   Belief shipped_;                 ///< and do
   std::vector<std::byte> recent_;  ///< that may still become part of a window
   Belief strict_;                  ///< what a board would do that finds every window

@@ -120,14 +120,13 @@ std::optional<Diagnostic> check_reach(const Program& program) {
 
 /// The fastest set-point beyond what its joint can do. The commander looks at few of them.
 std::string overspeed(const ScheduledMove& move) {
-  constexpr auto kRanges = parol6::planning::kJointRanges;
   std::size_t worst = 0;
   double most = 1;
   std::int32_t speed = 0;
   for (const auto& point : move.plan.set_points) {
-    for (std::size_t j = 0; j < kRanges.size(); ++j) {
+    for (std::size_t j = 0; j < parol6::kJointCount; ++j) {
       const double share =
-          std::abs(point.speed[j].value) / static_cast<double>(kRanges[j].max_speed.value);
+          std::abs(point.speed[j].value) / static_cast<double>(parol6::kJoints[j].max_speed.value);
       if (share <= most) continue;
       most = share;
       worst = j;
@@ -136,7 +135,7 @@ std::string overspeed(const ScheduledMove& move) {
   }
   if (speed == 0) return {};
   return fmt::format("j{} is told {} steps/s, it can do {}", worst + 1, speed,
-                     kRanges[worst].max_speed.value);
+                     parol6::kJoints[worst].max_speed.value);
 }
 
 /// What is odd about a move that was planned.
@@ -146,8 +145,9 @@ std::vector<std::string> doubts_of(const ScheduledMove& move) {
   const bool stands = std::ranges::all_of(
       move.plan.set_points, [&](const auto& point) { return point.position == move.start; });
   if (stands && !move.plan.stop) {
-    found.push_back(fmt::format("the joints are there already: they are held for {:.2f} s",
-                                0.01 * static_cast<double>(move.plan.set_points.size())));
+    found.push_back(
+        fmt::format("the joints are there already: they are held for {:.2f} s",
+                    parol6::planning::kTick * static_cast<double>(move.plan.set_points.size())));
   }
   if (move.plan.turns_long_way) {
     found.emplace_back("the commander turns the tool the long way round on this line");
@@ -226,7 +226,7 @@ std::optional<Diagnostic> check_guarded(const Program& program, const Schedule& 
       .position = from, .homed = homed, .io = parol6::io_flag::kEstopReleased};
   for (std::size_t i = 0; i < schedule.frames.size(); ++i) {
     const auto& frame = schedule.frames[i];
-    judge->set_time(Instant{} + i * std::chrono::milliseconds{10});
+    judge->set_time(Instant{} + i * parol6::kFramePeriod);
     judge->observe(encode(telemetry));
     auto reason = judge->must_stop();
     if (!reason) {

@@ -144,7 +144,7 @@ Read<Command> read_gripper(Arguments& arguments) {
   if (!position) return tl::unexpected{position.error()};
   const auto speed = arguments.integer(0, 255, "the speed");
   if (!speed) return tl::unexpected{speed.error()};
-  const auto current = arguments.integer(0, 1300, "the current in mA");
+  const auto current = arguments.integer(0, parol6::kMaxGripperCurrent.value, "the current in mA");
   if (!current) return tl::unexpected{current.error()};
   return GripperMove{*position, *speed, Milliamperes{*current}};
 }

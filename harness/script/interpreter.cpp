@@ -4,13 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "harness/motion/parol6/joint_table.hpp"
+
 namespace armjig::script {
 namespace {
 
 using parol6::CommandFrame;
 using parol6::JointSteps;
 
-constexpr double kTick = 0.01;
+using parol6::planning::kTick;
 constexpr int kLongestHold = 20;
 
 constexpr std::uint8_t kGripperGoes = parol6::gripper_command::kActivate |
@@ -132,7 +134,7 @@ std::optional<Diagnostic> Interpreter::execute(const JointSteps& position) {
         return wait(1);
       },
       [&](const GripperCalibration& /*calibration*/) {
-        frame_.gripper.mode = 1;
+        frame_.gripper.mode = parol6::gripper_mode::kCalibrate;
         return wait(1);
       },
       [&](const parol6::planning::Move& move) { return begin(move, position); },
@@ -175,7 +177,7 @@ CommandFrame Interpreter::idle(const JointSteps& position) {
   frame_.position = is_commander() ? position : JointSteps{};
   frame_.speed = {};
   auto frame = frame_;
-  frame_.gripper.mode = 0;  // it leaves once
+  frame_.gripper.mode = parol6::gripper_mode::kMove;  // it leaves once
   return frame;
 }
 

@@ -42,7 +42,7 @@ Peak peak_of(const parol6::planning::Plan& plan) {
   for (const auto& point : plan.set_points) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const double speed = std::abs(point.speed[j].value);
-      const double share = speed / parol6::planning::kJointRanges[j].max_speed.value;
+      const double share = speed / parol6::kJoints[j].max_speed.value;
       if (share > peak.share) peak = {j, speed, share};
     }
   }

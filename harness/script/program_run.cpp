@@ -81,7 +81,7 @@ void ProgramRun::apply(parol6::drive::Drive& drive, const parol6::CommandFrame& 
   if (frame.gripper == gripper_) return;
   drive.set_gripper(frame.gripper);
   gripper_ = frame.gripper;
-  gripper_.mode = 0;  // it leaves once
+  gripper_.mode = parol6::gripper_mode::kMove;  // it leaves once
 }
 
 ProgramRun::Wanted ProgramRun::wanted() {

@@ -8,6 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "harness/motion/parol6/joint_table.hpp"
 #include "harness/script/interpreter.hpp"
 
 namespace armjig::script {
@@ -33,7 +34,7 @@ struct Schedule {
   std::optional<Diagnostic> stop;  ///< ends early, behind the last frame
 
   [[nodiscard]] double seconds() const noexcept {
-    return static_cast<double>(frames.size()) * 0.01;
+    return static_cast<double>(frames.size()) * parol6::planning::kTick;
   }
 };
 

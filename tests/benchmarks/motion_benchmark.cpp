@@ -33,7 +33,7 @@ std::vector<arm::SixJoints> postures() {
 arm::SixJoints standby_angles() {
   arm::SixJoints joints{};
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    joints[j] = parol6::planning::radians_of(j, parol6::planning::standby()[j]);
+    joints[j] = parol6::planning::radians_of(j, parol6::kStandby[j]);
   }
   return joints;
 }
@@ -78,7 +78,7 @@ void plan_joint_move(benchmark::State& state) {
   const auto rules = state.range(0) == 0 ? parol6::planning::Rules::kDocumented
                                          : parol6::planning::Rules::kCommander;
   for (auto _ : state) {
-    auto plan = parol6::planning::plan(move, parol6::planning::standby(), {.rules = rules});
+    auto plan = parol6::planning::plan(move, parol6::kStandby, {.rules = rules});
     benchmark::DoNotOptimize(plan);
   }
 }
@@ -89,7 +89,7 @@ void plan_line(benchmark::State& state) {
                                     .target = {0, 263.23, 161.241, -90, 0, -89.499},
                                     .timing = {.duration = 4}};
   for (auto _ : state) {
-    auto plan = parol6::planning::plan(move, parol6::planning::standby());
+    auto plan = parol6::planning::plan(move, parol6::kStandby);
     benchmark::DoNotOptimize(plan);
   }
 }

@@ -100,7 +100,7 @@ class WatchedArm final : public HostedStream {
  private:
   [[nodiscard]] JointSteps positions() const {
     JointSteps all;
-    std::ranges::transform(arm_.board().joints(), all.begin(), &Joint::position);
+    std::ranges::transform(arm_.board().joints(), all.begin(), &emulation::Joint::position);
     return all;
   }
 

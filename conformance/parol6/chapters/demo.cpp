@@ -6,8 +6,6 @@
 namespace armjig::parol6::conformance {
 namespace {
 
-constexpr Speeds kOut{6179, -22'222, 49'812, 0, 4059, 46'075};
-
 /// Counters at power-up are 0, so every leg has its way to go. The longest takes
 /// 15.2 s, and more on a board with a long loop.
 constexpr Duration kLeg = 40s;
@@ -25,7 +23,7 @@ Sleep run_out(BoardBench& board) {
     const auto answer = board.ask(with_code(kDemo), 3s);
     const auto length = answer.received - answer.asked;
     if (length > 1s) return {board.ask(with_code(kDemo)), length};
-    board.pause(BoardBench::kFramePeriod);
+    board.pause(kFramePeriod);
   }
   board.fail("a sleep at the end of the first leg", "none within 40 s");
   return {};
@@ -49,7 +47,7 @@ constexpr Clause kClauses[] = {
            const auto out = run_out(board).after;
            board.about("the first answers after the sleep");
            for (std::size_t j = 0; j < kJointCount; ++j) {
-             board.expect_between(out, position_field(j), kOut[j] - 40, kOut[j] + 40);
+             board.expect_between(out, position_field(j), kDemoOut[j] - 40, kDemoOut[j] + 40);
            }
            run_back(board);
          }),
@@ -149,7 +147,8 @@ constexpr Clause kClauses[] = {
            board.act(jog({kFast, -kFast, kFast, -kFast, kFast, -kFast}));
            board.about("a jog at 60,000 after a demonstration");
            expect_reported(board, board.ask(jog({kFast, -kFast, kFast, -kFast, kFast, -kFast})),
-                           {6000, -4000, 3500, -3500, 3500, -7500});
+                           {kDemoSpeeds[kJ1], -kDemoSpeeds[kJ2], kDemoSpeeds[kJ3],
+                            -kDemoSpeeds[kJ4], kDemoSpeeds[kJ5], -kDemoSpeeds[kJ6]});
          }),
 
     must("parol6.demo.pauses-homing", "Code 69 pauses homing and runs the demonstration.",

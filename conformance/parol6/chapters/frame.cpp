@@ -105,7 +105,7 @@ constexpr Clause kClauses[] = {
            const auto begin = board.now();
            for (int i = 1; i <= 300; ++i) {
              board.ask(idle());
-             board.pause(begin + i * BoardBench::kFramePeriod - board.now());
+             board.pause(begin + i * kFramePeriod - board.now());
            }
            board.about("after 300 frames and their answers");
            board.expect_silence();
@@ -281,9 +281,8 @@ constexpr Clause kClauses[] = {
            int in_time = 0;
            for (int i = 0; i < kFrames; ++i) {
              const auto answer = board.ask(idle());
-             if (answer.received - answer.asked < BoardBench::kFramePeriod) ++in_time;
-             board.pause(
-                 std::max<Duration>(BoardBench::kFramePeriod - (board.now() - answer.asked), 0ms));
+             if (answer.received - answer.asked < kFramePeriod) ++in_time;
+             board.pause(std::max<Duration>(kFramePeriod - (board.now() - answer.asked), 0ms));
            }
            board.expect_true(in_time > kFrames / 2, "more than 25 of 50 answers within 10 ms",
                              fmt::format("{} were", in_time));

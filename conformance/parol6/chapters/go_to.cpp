@@ -36,8 +36,6 @@ Targets beside(const Answer& rest, const Speeds& ways) {
   return targets;
 }
 
-constexpr int law(int commanded, int distance) { return (commanded + 100 * distance) / 2; }
-
 /// Telemetry has the speed of a pass and the position after its step, if it made one.
 void expect_law(BoardBench& board, const CommandFrame& frame, Duration time) {
   board.act(frame);
@@ -48,8 +46,8 @@ void expect_law(BoardBench& board, const CommandFrame& frame, Duration time) {
       const auto distance = frame.position[j].value - answer.position[j].value;
       const auto reported = answer.speed[j].value;
       const auto direction = reported == 0 ? 0 : reported / std::abs(reported);
-      const auto now = law(frame.speed[j].value, distance);
-      const auto before = law(frame.speed[j].value, distance + direction);
+      const auto now = go_to_speed(frame.speed[j].value, distance);
+      const auto before = go_to_speed(frame.speed[j].value, distance + direction);
       board.about(fmt::format("a go-to of j{}, {} steps away, commanded speed {}", j + 1, distance,
                               frame.speed[j].value));
       board.expect_true(reported == now || reported == before,
@@ -293,7 +291,10 @@ constexpr Clause kClauses[] = {
     from(kHomed, Hazard::kMove,
          "Each joint runs at its own maximum toward a far target, both ways.",
          [](BoardBench& board) {
-           expect_far(board, {6500, 18'000, 20'000, 22'000, 22'000, 22'000});
+           Speeds most{};
+           std::ranges::transform(kJoints, most.begin(),
+                                  [](const Joint& joint) { return joint.max_speed.value; });
+           expect_far(board, most);
          }),
 
     must("parol6.goto.unlimited", "A go-to drives a homed joint beyond its range without stopping.",

@@ -49,7 +49,7 @@ void prepare(BoardBench& board, int place) {
   const auto answer = board.act(with_gripper(active));
   if (is_untold(answer)) return board.leave_open("no gripper answers on the board's CAN");
   if (!is_calibrated(answer)) {
-    board.act(with_gripper({.mode = 1}));
+    board.act(with_gripper({.mode = gripper_mode::kCalibrate}));
     board.about("a calibration");
     if (!board.ask_until(idle(), is_calibrated, 35s)) {
       board.fail("gripper.status with bit 01 within 35 s", "never");
@@ -167,7 +167,7 @@ void open_gripper(BoardBench& board) {
     return board.leave_open("no gripper answers on the board's CAN");
   }
   if (!is_calibrated(answer)) {
-    board.act(with_gripper({.mode = 1}));
+    board.act(with_gripper({.mode = gripper_mode::kCalibrate}));
     if (!board.ask_until(idle(), is_calibrated, 35s)) {
       return board.fail("a calibrated gripper within 35 s", "none");
     }
@@ -264,7 +264,7 @@ constexpr Clause kClauses[] = {
         "The calibrated bit goes and comes.",
         [](BoardBench& board) {
           prepare(board, 100);
-          board.act(with_gripper({.mode = 1}));
+          board.act(with_gripper({.mode = gripper_mode::kCalibrate}));
           board.act(idle());
           board.about("a calibration that has just begun");
           board.expect_bits(board.ask(idle()), "gripper.status", gripper_status::kCalibrated, 0);
@@ -591,7 +591,7 @@ constexpr Clause kClauses[] = {
                           begin_homing(board, 20ms);
                           expect_follows(board, idle(), 120);
                           board.about("homing while the gripper is told to move");
-                          expect_speed(board, run(board, idle(), 100ms), 1, -2550);
+                          expect_speed(board, run(board, idle(), 100ms), kJ2, kHoming[kJ2].seek);
                           board.act(with_code(kEnable));
                         },
                         kFull)),
@@ -670,9 +670,9 @@ constexpr Clause kClauses[] = {
         "Clear-error stops a calibration.",
         [](BoardBench& board) {
           prepare(board, 200);
-          board.act(with_gripper({.mode = 1}));
+          board.act(with_gripper({.mode = gripper_mode::kCalibrate}));
           board.keep_asking(idle(), 200ms);
-          board.act(with_gripper({.mode = 2}));
+          board.act(with_gripper({.mode = gripper_mode::kClearError}));
           board.about("clear-error in a calibration");
           expect_stands(board, {});
         },

@@ -8,10 +8,8 @@ namespace {
 
 constexpr Duration kSomeSeeking = 200ms;
 
-constexpr Speeds kSeekSpeeds{-2050, -2550, -2550, 5550, -5050, -9550};
-
 void expect_seeks(BoardBench& board, const CommandFrame& frame) {
-  expect_speed(board, run(board, frame, 100ms), 1, -2550);
+  expect_speed(board, run(board, frame, 100ms), kJ2, kHoming[kJ2].seek);
 }
 
 /// Homing that a frame has ended stays ended.
@@ -27,7 +25,7 @@ void expect_ended(BoardBench& board, const CommandFrame& frame) {
 void expect_seek_speeds(BoardBench& board, std::string what) {
   board.act(with_code(kHome));
   board.about(std::move(what));
-  expect_reported(board, board.ask(idle()), kSeekSpeeds);
+  expect_reported(board, board.ask(idle()), seek_speeds());
   board.act(with_code(kEnable));
 }
 
@@ -80,7 +78,7 @@ constexpr Clause kClauses[] = {
            const auto frame = with_speeds(255, {5, 6, 7, 8, 9, 10});
            board.about("homing, with speeds in idle frames");
            expect_seeks(board, frame);
-           expect_reported(board, board.ask(frame), kSeekSpeeds);
+           expect_reported(board, board.ask(frame), seek_speeds());
            board.act(with_code(kEnable));
          }),
 
@@ -91,7 +89,7 @@ constexpr Clause kClauses[] = {
            board.act(with_code(kHome));
            board.about("homing, with the home command in every frame");
            expect_seeks(board, with_code(kHome));
-           expect_reported(board, board.ask(with_code(kHome)), kSeekSpeeds);
+           expect_reported(board, board.ask(with_code(kHome)), seek_speeds());
            board.act(with_code(kEnable));
          }),
 
@@ -243,7 +241,7 @@ constexpr Clause kClauses[] = {
          [](BoardBench& board) {
            const auto stretch = after_one_switch(board);
            board.expect_same(stretch.after, "position.j1", stretch.before);
-           expect_speed(board, stretch, 1, -2550);
+           expect_speed(board, stretch, kJ2, kHoming[kJ2].seek);
          }),
 
     should("parol6.home.seen-forgotten",
@@ -253,7 +251,7 @@ constexpr Clause kClauses[] = {
          [](BoardBench& board) {
            const auto stretch = after_one_switch(board);
            expect_speed(board, stretch, 0, -2050);
-           expect_speed(board, stretch, 1, -2550);
+           expect_speed(board, stretch, kJ2, kHoming[kJ2].seek);
          }),
 
     must("parol6.home.pressed-at-start",
@@ -267,7 +265,7 @@ constexpr Clause kClauses[] = {
            const auto stretch = run(board, idle(), 100ms);
            board.expect(stretch.after, "position.j1", 0);
            board.expect(stretch.after, "speed.j1", 0);
-           expect_speed(board, stretch, 1, -2550);
+           expect_speed(board, stretch, kJ2, kHoming[kJ2].seek);
            board.touch("switch.j1", 0);
          }),
 

@@ -14,8 +14,9 @@ std::int32_t position(const Answer& answer, std::size_t joint) {
 
 /// The highest (or lowest) position while the joint backs off: the target, or as little short of it
 /// as it went between two answers.
-void expect_back_off(BoardBench& board, std::uint8_t homed, std::size_t joint, int speed,
-                     int target) {
+void expect_back_off(BoardBench& board, std::uint8_t homed, std::size_t joint) {
+  const auto speed = kHoming[joint].back_off;
+  const auto target = kHoming[joint].back_off_to;
   const auto backing_off = record(board).with_speed(homed, joint, speed);
   board.about("the back-off from the switch");
   if (backing_off.size() < 2) {
@@ -30,7 +31,7 @@ void expect_back_off(BoardBench& board, std::uint8_t homed, std::size_t joint, i
     if (i > 0) longest = std::max(longest, backing_off[i].received - backing_off[i - 1].asked);
   }
   const auto missed =
-      std::chrono::duration<double>(longest + board.noise() + BoardBench::kFramePeriod).count() *
+      std::chrono::duration<double>(longest + board.noise() + kFramePeriod).count() *
       std::abs(speed);
   board.expect_true(furthest <= target * sign && furthest >= target * sign - missed,
                     fmt::format("j{} to go to {}, seen from {:.0f} on", joint + 1, target,
@@ -38,15 +39,15 @@ void expect_back_off(BoardBench& board, std::uint8_t homed, std::size_t joint, i
                     fmt::format("it goes to {}", furthest * sign));
 }
 
-void expect_rest(BoardBench& board, std::uint8_t homed, std::size_t joint, int where) {
+void expect_rest(BoardBench& board, std::uint8_t homed, std::size_t joint) {
   const auto answers = record(board).with_bits(homed);
   board.about(fmt::format("while homed is {:02X}", homed));
   if (answers.empty()) return board.fail("such answers", "none");
-  for (const auto& answer : answers) board.expect(answer, position_field(joint), where);
+  for (const auto& answer : answers)
+    board.expect(answer, position_field(joint), kHoming[joint].end);
 }
 
-/// On a ramp from rest at `from` the square of the speed is twice the acceleration times the way:
-/// judged at a quarter of the way, where neither the first steps nor the maximum matter much.
+/// Judged at a quarter of the way, where neither the first steps nor the maximum matter much.
 void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int from, int to,
                  double acceleration) {
   constexpr double kTolerance = 0.03;
@@ -60,7 +61,7 @@ void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int f
     const bool is_set = speed == 2050 || speed == 4050 || speed == 5550 || speed == 1050;
     if (!is_speeding_up || is_set) continue;
     ++judged;
-    const auto wanted = std::sqrt(2 * acceleration * way);
+    const auto wanted = ramp_speed(acceleration, way);
     board.about(fmt::format("j{} {} steps into its final move", joint + 1, way));
     board.expect_true(std::abs(speed - wanted) <= kTolerance * wanted + 20,
                       fmt::format("a speed of {:.0f} steps/s", wanted),
@@ -70,9 +71,15 @@ void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int f
                     fmt::format("{} answers show it", judged));
 }
 
+void expect_final_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint) {
+  expect_ramp(board, homed, joint, 0, kHoming[joint].end, kHoming[joint].acceleration);
+}
+
 /// The first seek is that short or longer as the arm stood; the other two have their length.
-void expect_speeds(BoardBench& board, std::uint8_t homed, std::size_t joint, int seek, int back_off,
-                   int slow) {
+void expect_speeds(BoardBench& board, std::uint8_t homed, std::size_t joint) {
+  const auto seek = kHoming[joint].seek;
+  const auto back_off = kHoming[joint].back_off;
+  const auto slow = kHoming[joint].slow_seek;
   const auto run = record(board);
   for (const auto speed : {back_off, slow}) {
     board.about("back-off and second seek");
@@ -121,7 +128,7 @@ constexpr Clause kClauses[] = {
              board.about("before J4 is homed");
              board.expect_same(answer, "position.j6", run.first());
            }
-           for (const auto& answer : run.with_speed(kFirstFourHomed, kJ6, -9550)) {
+           for (const auto& answer : run.with_speed(kFirstFourHomed, kJ6, kHoming[kJ6].seek)) {
              board.about("while J6 seeks");
              board.expect_same(answer, "position.j5", run.first());
            }
@@ -156,17 +163,15 @@ constexpr Clause kClauses[] = {
          "comes later: -2050, -2550, -2550, 5550, -5050, -9550.",
          "firmware; recordings"),
     from(kHomed, Hazard::kObserve, "The first answer of the run had six seek speeds.",
-         [](BoardBench& board) {
-           expect_reported(board, record(board).first(), {-2050, -2550, -2550, 5550, -5050, -9550});
-         }),
+         [](BoardBench& board) { expect_reported(board, record(board).first(), seek_speeds()); }),
 
     must("parol6.home.seek-motion",
          "J1, J2 and J3 seek their switches downward at 2050, 2550 and 2550 steps/s.", "firmware"),
     from(kHomed, Hazard::kObserve, "J1 to J3 went down as fast as they said.",
          [](BoardBench& board) {
-           constexpr int kSeek[] = {-2050, -2550, -2550};
            for (const auto joint : {kJ1, kJ2, kJ3}) {
-             auto seeking = record(board).with_speed(kNoneHomed, joint, kSeek[joint]);
+             const auto seek = kHoming[joint].seek;
+             auto seeking = record(board).with_speed(kNoneHomed, joint, seek);
              // J1 has this speed also while it backs off.
              const auto turned =
                  std::ranges::adjacent_find(seeking, [&](const auto& a, const auto& b) {
@@ -175,7 +180,7 @@ constexpr Clause kClauses[] = {
              seeking.erase(turned == seeking.end() ? turned : turned + 1, seeking.end());
              if (seeking.size() < 10) continue;
              board.about("the first seek");
-             expect_speed(board, {seeking.front(), seeking.back()}, joint, kSeek[joint]);
+             expect_speed(board, {seeking.front(), seeking.back()}, joint, seek);
            }
          }),
 
@@ -207,10 +212,9 @@ constexpr Clause kClauses[] = {
          [](BoardBench& board) {
            for (const auto joint : {kJ1, kJ2, kJ3}) {
              // At rest it is at its switch, or at the end of its final move.
-             constexpr int kFinal[] = {13'500, 19'588, 23'020};
              for (const auto& answer : record(board).with_bits(kNoneHomed)) {
                const bool waits =
-                   answer.speed[joint].value == 0 && position(answer, joint) != kFinal[joint];
+                   answer.speed[joint].value == 0 && position(answer, joint) != kHoming[joint].end;
                if (!waits) continue;
                board.about("a joint that waits for the others");
                board.expect(answer, position_field(joint), 0);
@@ -222,13 +226,15 @@ constexpr Clause kClauses[] = {
          "J1, J2 and J3 back off from their switches to 850, 1050 and 1050.", "firmware"),
     from(kHomed, Hazard::kObserve, "J1 to J3 backed off as far as they should.",
          [](BoardBench& board) {
-           expect_back_off(board, kNoneHomed, kJ2, 2050, 1050);
-           expect_back_off(board, kNoneHomed, kJ3, 2050, 1050);
+           expect_back_off(board, kNoneHomed, kJ2);
+           expect_back_off(board, kNoneHomed, kJ3);
            auto furthest = 0;
-           for (const auto& answer : record(board).with_speed(kNoneHomed, kJ2, 2050)) {
+           const auto speed = kHoming[kJ2].back_off;
+           for (const auto& answer : record(board).with_speed(kNoneHomed, kJ2, speed)) {
              furthest = std::max(furthest, position(answer, kJ1));
            }
-           board.expect_true(furthest == 850, "j1 to wait at 850 while J2 and J3 back off",
+           board.expect_true(furthest == kHoming[kJ1].back_off_to,
+                             "j1 to wait at 850 while J2 and J3 back off",
                              fmt::format("it goes to {}", furthest));
          }),
 
@@ -238,12 +244,12 @@ constexpr Clause kClauses[] = {
          "firmware: only the magnitude matters there"),
     from(kHomed, Hazard::kObserve, "J1 showed -2050 while J2 and J3 showed 2050.",
          [](BoardBench& board) {
-           const auto answers = record(board).with_speed(kNoneHomed, kJ2, 2050);
+           const auto answers = record(board).with_speed(kNoneHomed, kJ2, kHoming[kJ2].back_off);
            board.about("while J2 backs off");
            if (answers.empty()) return board.fail("speed.j2 = 2050 for a while", "never");
            for (const auto& answer : answers) {
-             board.expect(answer, "speed.j1", -2050);
-             board.expect(answer, "speed.j3", 2050);
+             board.expect(answer, "speed.j1", kHoming[kJ1].back_off);
+             board.expect(answer, "speed.j3", kHoming[kJ3].back_off);
            }
          }),
 
@@ -252,13 +258,14 @@ constexpr Clause kClauses[] = {
     from(kHomed, Hazard::kObserve, "J1 to J3 sought a second time at -750.",
          [](BoardBench& board) {
            for (const auto joint : {kJ1, kJ2, kJ3}) {
-             const auto answers = record(board).with_speed(kNoneHomed, joint, -750);
+             const auto slow = kHoming[joint].slow_seek;
+             const auto answers = record(board).with_speed(kNoneHomed, joint, slow);
              board.about("the second seek");
              if (answers.size() < 10) {
-               return board.fail(fmt::format("speed.j{} = -750 for about a second", joint + 1),
+               return board.fail(fmt::format("speed.j{} = {} for about a second", joint + 1, slow),
                                  fmt::format("{} answers show it", answers.size()));
              }
-             expect_speed(board, {answers.front(), answers.back()}, joint, -750);
+             expect_speed(board, {answers.front(), answers.back()}, joint, slow);
            }
          }),
 
@@ -268,9 +275,7 @@ constexpr Clause kClauses[] = {
     from(kHomed, Hazard::kObserve, "J1 to J3 stood at their final positions.",
          [](BoardBench& board) {
            for (const auto homed : {kFirstThreeHomed, kFirstFourHomed}) {
-             expect_rest(board, homed, kJ1, 13'500);
-             expect_rest(board, homed, kJ2, 19'588);
-             expect_rest(board, homed, kJ3, 23'020);
+             for (const auto joint : {kJ1, kJ2, kJ3}) expect_rest(board, homed, joint);
            }
          }),
 
@@ -279,49 +284,48 @@ constexpr Clause kClauses[] = {
          "firmware, vectors S1 to S3"),
     from(kHomed, Hazard::kObserve, "J1 to J3 accelerated as they should.",
          [](BoardBench& board) {
-           expect_ramp(board, kNoneHomed, kJ1, 0, 13'500, 4500);
-           expect_ramp(board, kNoneHomed, kJ2, 0, 19'588, 3000);
-           expect_ramp(board, kNoneHomed, kJ3, 0, 23'020, 5000);
+           for (const auto joint : {kJ1, kJ2, kJ3}) expect_final_ramp(board, kNoneHomed, joint);
          }),
 
     must("parol6.home.speeds-j4", "J4 seeks at 5550, backs off with -4050, seeks again at 4050.",
          "firmware"),
     from(kHomed, Hazard::kObserve, "J4 had its three speeds.",
-         [](BoardBench& board) { expect_speeds(board, kFirstThreeHomed, kJ4, 5550, -4050, 4050); }),
+         [](BoardBench& board) { expect_speeds(board, kFirstThreeHomed, kJ4); }),
 
     must("parol6.home.back-off-j4", "J4 backs off to -1550.", "firmware"),
     from(kHomed, Hazard::kObserve, "J4 backed off to -1550.",
-         [](BoardBench& board) { expect_back_off(board, kFirstThreeHomed, kJ4, -4050, -1550); }),
+         [](BoardBench& board) { expect_back_off(board, kFirstThreeHomed, kJ4); }),
 
     must("parol6.home.final-j4",
          "J4 ends at -10200 from its switch and waits there; its homed bit comes with that.",
          "firmware"),
     from(kHomed, Hazard::kObserve, "J4 stood at -10200.",
-         [](BoardBench& board) { expect_rest(board, kFirstFourHomed, kJ4, -10'200); }),
+         [](BoardBench& board) { expect_rest(board, kFirstFourHomed, kJ4); }),
 
     must("parol6.home.ramp-j4", "The final move of J4 accelerates with 5500 steps/s^2.",
          "firmware, vector S4"),
     from(kHomed, Hazard::kObserve, "J4 accelerated as it should.",
-         [](BoardBench& board) { expect_ramp(board, kFirstThreeHomed, kJ4, 0, -10'200, 5500); }),
+         [](BoardBench& board) { expect_final_ramp(board, kFirstThreeHomed, kJ4); }),
 
     must("parol6.home.speeds-j6", "J6 seeks at -9550, backs off with 4050, seeks again at -8050.",
          "firmware"),
     from(kHomed, Hazard::kObserve, "J6 had its three speeds.",
-         [](BoardBench& board) { expect_speeds(board, kFirstFourHomed, kJ6, -9550, 4050, -8050); }),
+         [](BoardBench& board) { expect_speeds(board, kFirstFourHomed, kJ6); }),
 
     must("parol6.home.back-off-j6", "J6 backs off to 1550.", "firmware"),
     from(kHomed, Hazard::kObserve, "J6 backed off to 1550.",
-         [](BoardBench& board) { expect_back_off(board, kFirstFourHomed, kJ6, 4050, 1550); }),
+         [](BoardBench& board) { expect_back_off(board, kFirstFourHomed, kJ6); }),
 
     must("parol6.home.parks-j6",
          "J6 parks at 15900 from its switch, without its homed bit, while J5 seeks.", "firmware"),
     from(kHomed, Hazard::kObserve, "J6 stood at 15900, not homed, while J5 sought.",
          [](BoardBench& board) {
-           const auto answers = record(board).with_speed(kFirstFourHomed, kJ5, -4050);
+           const auto answers =
+               record(board).with_speed(kFirstFourHomed, kJ5, kHoming[kJ5].slow_seek);
            board.about("while J5 seeks a second time");
            if (answers.empty()) return board.fail("such answers", "none");
            for (const auto& answer : answers) {
-             board.expect(answer, "position.j6", 15'900);
+             board.expect(answer, "position.j6", kParkingJ6);
              board.expect_bits(answer, "homed", flag(kJ6), 0);
            }
          }),
@@ -329,24 +333,27 @@ constexpr Clause kClauses[] = {
     must("parol6.home.ramp-j6", "J6 accelerates with 10500 steps/s^2 on its way to park.",
          "firmware, vector S5"),
     from(kHomed, Hazard::kObserve, "J6 accelerated as it should.",
-         [](BoardBench& board) { expect_ramp(board, kFirstFourHomed, kJ6, 0, 15'900, 10'500); }),
+         [](BoardBench& board) {
+           expect_ramp(board, kFirstFourHomed, kJ6, 0, kParkingJ6, kParkingAccelerationJ6);
+         }),
 
     must("parol6.home.speeds-j5", "J5 seeks at -5050, backs off with 4050, seeks again at -4050.",
          "firmware"),
     from(kHomed, Hazard::kObserve, "J5 had its three speeds.",
-         [](BoardBench& board) { expect_speeds(board, kFirstFourHomed, kJ5, -5050, 4050, -4050); }),
+         [](BoardBench& board) { expect_speeds(board, kFirstFourHomed, kJ5); }),
 
     must("parol6.home.back-off-j5", "J5 backs off to 1550.", "firmware"),
     from(kHomed, Hazard::kObserve, "J5 backed off to 1550.",
-         [](BoardBench& board) { expect_back_off(board, kFirstFourHomed, kJ5, 4050, 1550); }),
+         [](BoardBench& board) { expect_back_off(board, kFirstFourHomed, kJ5); }),
 
     must("parol6.home.ramp-j5",
          "The final moves of J5 and of J6 on its return accelerate with 5500 steps/s^2.",
          "firmware, vectors S6 and S7"),
     from(kHomed, Hazard::kObserve, "J5 and the returning J6 accelerated as they should.",
          [](BoardBench& board) {
-           expect_ramp(board, kFirstFourHomed, kJ5, 0, 8900, 5500);
-           expect_ramp(board, kFirstFourHomed, kJ6, 15'900, 0, 5500);
+           expect_final_ramp(board, kFirstFourHomed, kJ5);
+           expect_ramp(board, kFirstFourHomed, kJ6, kParkingJ6, kHoming[kJ6].end,
+                       kHoming[kJ6].acceleration);
          }),
 
     must("parol6.home.returns-j6",
@@ -356,8 +363,9 @@ constexpr Clause kClauses[] = {
            int together = 0;
            for (const auto& answer : record(board).with_bits(kFirstFourHomed)) {
              const bool j5_on_its_way =
-                 position(answer, kJ5) > 1600 && position(answer, kJ5) < 8900;
-             const bool j6_on_its_way = position(answer, kJ6) > 0 && position(answer, kJ6) < 15'900;
+                 position(answer, kJ5) > 1600 && position(answer, kJ5) < kHoming[kJ5].end;
+             const bool j6_on_its_way =
+                 position(answer, kJ6) > 0 && position(answer, kJ6) < kParkingJ6;
              together += j5_on_its_way && j6_on_its_way && answer.speed[kJ5].value > 0 &&
                                  answer.speed[kJ6].value < 0
                              ? 1
@@ -401,7 +409,7 @@ constexpr Clause kClauses[] = {
            const auto before_end = record.with_bits(kFirstFourHomed);
            if (before_end.empty()) return board.leave_open("homing was too fast to be seen");
            board.about("the last answer before the end of homing");
-           board.expect(before_end.back(), "position.j5", 8900);
+           board.expect(before_end.back(), "position.j5", kHoming[kJ5].end);
            board.expect_between(before_end.back(), "position.j6", 0, 20);
          }),
 };

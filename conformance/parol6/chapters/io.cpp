@@ -6,9 +6,7 @@
 namespace armjig::parol6::conformance {
 namespace {
 
-constexpr std::uint8_t kBoth = io_flag::kOut1 | io_flag::kOut2;
-
-constexpr std::uint8_t kOutputs[] = {io_flag::kOut1, io_flag::kOut2, kBoth, 0};
+constexpr std::uint8_t kOutputs[] = {io_flag::kOut1, io_flag::kOut2, io_flag::kOutputs, 0};
 
 CommandFrame with_outputs(CommandFrame frame, std::uint8_t outputs) {
   frame.in_out = outputs;
@@ -18,7 +16,7 @@ CommandFrame with_outputs(CommandFrame frame, std::uint8_t outputs) {
 void expect_outputs(BoardBench& board, const CommandFrame& frame) {
   for (const auto outputs : kOutputs) {
     board.about(fmt::format("code {}", static_cast<int>(frame.command)));
-    board.expect_bits(board.ask(with_outputs(frame, outputs)), "io", kBoth, outputs);
+    board.expect_bits(board.ask(with_outputs(frame, outputs)), "io", io_flag::kOutputs, outputs);
   }
 }
 
@@ -62,7 +60,7 @@ constexpr Clause kClauses[] = {
             from(kListening, Hazard::kState, "Outputs stay on in a second frame that wants them.",
                  [](BoardBench& board) {
                    auto frame = idle();
-                   frame.in_out = io_flag::kOut1 | io_flag::kOut2;
+                   frame.in_out = io_flag::kOutputs;
                    board.ask(frame);
                    board.about("the second frame with both outputs");
                    board.expect_bits(board.ask(frame), "io", frame.in_out, frame.in_out);
@@ -76,7 +74,7 @@ constexpr Clause kClauses[] = {
     from(kListening, Hazard::kState, "Each output bit sets its own output alone.",
          [](BoardBench& board) {
            const auto off = board.ask(idle());
-           board.expect(off, "io", off.io & ~kBoth);
+           board.expect(off, "io", off.io & ~io_flag::kOutputs);
            board.expect(board.ask(with_outputs(idle(), 0x20)), "io", off.io | 0x20);
            board.expect(board.ask(with_outputs(idle(), 0x10)), "io", off.io | 0x10);
            board.expect(board.ask(idle()), "io", off.io);
@@ -140,7 +138,7 @@ constexpr Clause kClauses[] = {
                            expect_outputs(board, idle());
                            const auto stretch = run(board, idle(), 100ms);
                            board.about("homing while outputs change");
-                           expect_speed(board, stretch, 0, -2050);
+                           expect_speed(board, stretch, kJ1, kHoming[kJ1].seek);
                            board.act(with_code(kEnable));
                          })),
     variant("demo", full(from(kFresh, Hazard::kMove, "OUT1 goes on in the demonstration.",
@@ -270,7 +268,7 @@ constexpr Clause kClauses[] = {
            press(board);
            board.about("homing with the emergency stop pressed");
            begin_homing(board, 20ms);
-           expect_speed(board, run(board, idle(), 100ms), 0, -2050);
+           expect_speed(board, run(board, idle(), 100ms), kJ1, kHoming[kJ1].seek);
            release(board);
          }),
 

@@ -97,8 +97,8 @@ constexpr Clause kClauses[] = {
          "firmware; GUI, table of jog speeds"),
     from(kEnabled, Hazard::kMove, "Each joint makes the steps of its highest jog speed.",
          [](BoardBench& board) {
-           constexpr Speeds kMost{1500, 3000, 3600, 7000, 7000, 18'000};
-           for (std::size_t j = 0; j < kJointCount; ++j) expect_jog(board, j, kMost[j], 100ms);
+           for (std::size_t j = 0; j < kJointCount; ++j)
+             expect_jog(board, j, kJoints[j].max_jog.value, 100ms);
          }),
 
     must("parol6.jog.no-ramp", "A jog has its full speed from the first step on, without a ramp.",
@@ -208,10 +208,9 @@ constexpr Clause kClauses[] = {
          "document: maxima of the GUI", Profiles::kDocumented, "parol6.jog.clamp"),
     from(kEnabled, Hazard::kMove, "Each joint jogs at its own maximum when told 30,000, both ways.",
          [](BoardBench& board) {
-           constexpr Speeds kMost{6500, 18'000, 20'000, 22'000, 22'000, 22'000};
            for (std::size_t j = 0; j < kJointCount; ++j) {
-             expect_clamped(board, j, 30'000, kMost[j]);
-             expect_clamped(board, j, -30'000, -kMost[j]);
+             expect_clamped(board, j, 30'000, kJoints[j].max_speed.value);
+             expect_clamped(board, j, -30'000, -kJoints[j].max_speed.value);
            }
          }),
 

@@ -26,13 +26,7 @@ Answer beyond_range(BoardBench& board) {
 
 constexpr GripperSetPoint kElsewhere{.speed = 77, .id = 5};
 
-constexpr double kTicksPerSecond = 703'125.0;
-
 constexpr double kClockError = 0.02;  // the board runs from an RC oscillator: 1 %, and a margin
-
-double ticks_in(Duration time) {
-  return std::chrono::duration<double>(time).count() * kTicksPerSecond;
-}
 
 /// The board took each frame between when it was handed over and when its answer had come.
 void expect_interval(BoardBench& board, const Answer& before, const Answer& after) {

@@ -34,13 +34,9 @@ constexpr GoToWay::Limits kFastest{StepsPerSecond{15'000}, StepsPerSecond{25'000
                                    StepsPerSecond{32'000}, StepsPerSecond{22'000},
                                    StepsPerSecond{22'000}, StepsPerSecond{27'000}};
 
-constexpr bool moves(Command command) noexcept {
-  return command == Command::kHome || command == Command::kJog || command == Command::kGoTo;
-}
-
-constexpr bool ends_homing(Command command) noexcept {
-  return command == Command::kEnable || command == Command::kDisable ||
-         command == Command::kClearError || command == Command::kJog || command == Command::kGoTo;
+/// Code 69 is an offence of its own (parol6.host.no-demo).
+constexpr bool is_move(Command command) noexcept {
+  return moves(command) && command != Command::kDemo;
 }
 
 /// The same but for what goes along with any command.
@@ -100,7 +96,7 @@ void Conduct::note_occasions(const CommandFrame& frame, const Complain& complain
   const bool is_jog = frame.command == Command::kJog;
   note(frame.command != Command::kIdle, occasion::kCommand);
   note(frame.command == Command::kHome, occasion::kHome);
-  note(moves(frame.command), occasion::kMove);
+  note(is_move(frame.command), occasion::kMove);
   note(is_go_to, occasion::kGoTo);
   note(is_jog, occasion::kJog);
   note(is_go_to && is_arm_homed(), occasion::kHomedGoTo);
@@ -173,7 +169,7 @@ void Conduct::call_silent(Instant time, Duration longest, const Complain& compla
 }
 
 void Conduct::judge_permission(const CommandFrame& frame, const Complain& complain) const {
-  if (!moves(frame.command)) return;
+  if (!is_move(frame.command)) return;
   if (!telemetry_) {
     complain("parol6.host.looks-first", fmt::format("code {} came first", code(frame.command)));
   } else if (is_estop_pressed()) {
@@ -193,7 +189,7 @@ void Conduct::judge_estop(Instant time, const CommandFrame& frame, const Complai
     has_disabled_ = true;
     return;
   }
-  if (has_disabled_ && (moves(frame.command) || frame.command == Command::kEnable)) {
+  if (has_disabled_ && (is_move(frame.command) || frame.command == Command::kEnable)) {
     complain("parol6.host.estop-stays", fmt::format("code {} came while the emergency stop was "
                                                     "pressed",
                                                     code(frame.command)));

@@ -12,9 +12,8 @@
 namespace armjig::parol6::programs {
 namespace {
 
-constexpr std::uint8_t kMove = 0;
-constexpr std::uint8_t kLastMode = 2;
-constexpr int kPeriodMs = 10;
+using gripper_mode::kClearError;
+using gripper_mode::kMove;
 
 constexpr bool is_byte(std::int16_t value) noexcept { return value >= 0 && value <= 255; }
 
@@ -39,12 +38,12 @@ constexpr std::array kRules{
     FieldRule{"parol6.host.no-demo", "command",
               [](const CommandFrame& frame) { return frame.command != Command::kDemo; }},
     FieldRule{"parol6.host.spare-outputs", "in_out",
+              [](const CommandFrame& frame) { return (frame.in_out & ~io_flag::kOutputs) == 0; }},
+    FieldRule{"parol6.host.timeout", "timeout",
               [](const CommandFrame& frame) {
-                return (frame.in_out & ~(io_flag::kOut1 | io_flag::kOut2)) == 0;
+                return frame.timeout == 0 ||
+                       std::chrono::milliseconds{frame.timeout} > kFramePeriod;
               }},
-    FieldRule{
-        "parol6.host.timeout", "timeout",
-        [](const CommandFrame& frame) { return frame.timeout == 0 || frame.timeout > kPeriodMs; }},
     FieldRule{"parol6.host.gripper-id", "gripper.id",
               [](const CommandFrame& frame) { return frame.gripper.id <= 15; }},
     FieldRule{"parol6.host.gripper-position", "gripper.position",
@@ -54,10 +53,10 @@ constexpr std::array kRules{
     FieldRule{"parol6.host.gripper-current", "gripper.current",
               [](const CommandFrame& frame) {
                 return frame.gripper.current >= Milliamperes{0} &&
-                       frame.gripper.current <= Milliamperes{1300};
+                       frame.gripper.current <= kMaxGripperCurrent;
               }},
     FieldRule{"parol6.host.gripper-mode", "gripper.mode",
-              [](const CommandFrame& frame) { return frame.gripper.mode <= kLastMode; }},
+              [](const CommandFrame& frame) { return frame.gripper.mode <= kClearError; }},
 };
 
 std::string value_text(std::string_view field_name, const CommandFrame& frame) {
@@ -86,14 +85,14 @@ void GripperConduct::judge(const CommandFrame& frame, const std::optional<Grippe
                            const Complain& complain) {
   const auto& wanted = frame.gripper;
   const auto set_point = without_mode(wanted);
-  const bool is_one_shot = wanted.mode != kMove && wanted.mode <= kLastMode;
+  const bool is_one_shot = wanted.mode != kMove && wanted.mode <= kClearError;
   if (is_one_shot) complain.occasion(occasion::kGripperMode);
-  if (wanted.mode == kLastMode) complain.occasion(occasion::kGripperClear);
+  if (wanted.mode == kClearError) complain.occasion(occasion::kGripperClear);
   if (is_one_shot && before_ && before_->mode == wanted.mode) {
     complain("parol6.host.gripper-mode-once",
              fmt::format("mode {} stood in one frame after the other", wanted.mode));
   }
-  if (wanted.mode == kLastMode && (wanted.command & gripper_command::kEstop) != 0) {
+  if (wanted.mode == kClearError && (wanted.command & gripper_command::kEstop) != 0) {
     complain("parol6.host.gripper-clear-stopped", "a clear-error came with the stop flag");
   }
   if (wanted.mode == kMove && forgotten_ == set_point) {

@@ -12,10 +12,8 @@
 namespace armjig::parol6::programs {
 namespace {
 
-constexpr Duration kPeriod = std::chrono::milliseconds{10};
 /// So many bytes end whatever a receiver is in (parol6.receive.length-zero).
 constexpr std::size_t kFlushSize = 256;
-constexpr std::size_t kStoreSize = 255;
 
 std::size_t start_in(Bytes bytes) noexcept {
   const auto at = std::search_n(bytes.begin(), bytes.end(), kStartSize, kStartByte);
@@ -31,7 +29,7 @@ std::string excerpt(Bytes bytes) {
 }  // namespace
 
 Framing::Framing(Complain complain, Duration noise)
-    : complain_{std::move(complain)}, most_{kPeriod + noise}, dissector_{make_dissector()} {}
+    : complain_{std::move(complain)}, most_{kFramePeriod + noise}, dissector_{make_dissector()} {}
 
 void Framing::feed(Instant time, Bytes bytes, const OnFrame& on_frame) {
   messages_.clear();
@@ -94,7 +92,7 @@ bool Framing::is_reset(Bytes stray) {
   const auto are = [](Bytes bytes, std::byte value) {
     return std::ranges::all_of(bytes, [value](std::byte byte) { return byte == value; });
   };
-  if (has_flushed_ && stray.size() == kHeaderSize + kStoreSize) {
+  if (has_flushed_ && stray.size() == kHeaderSize + kLongestPayload) {
     return are(stray.first(kHeaderSize), kStartByte) && are(stray.subspan(kHeaderSize), {});
   }
   if (stray.size() < kFlushSize || stray[0] == kStartByte) return false;

@@ -15,8 +15,7 @@ using namespace planning;
 
 namespace {
 
-constexpr double kMostSteps = 8'388'607;  // 24 bits
-constexpr double kMostSpeed = 50'000;     // the board's own limit
+constexpr double kMostSpeed = kMaxStepRate.value;
 
 auto unknown_unit(std::string_view text, std::string_view units) {
   return tl::unexpected{fmt::format("'{}' has an unknown unit: write {}", text, units)};

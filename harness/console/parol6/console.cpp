@@ -35,8 +35,7 @@ constexpr int kMostRefusals = 3;
 JointSpeeds fastest_glide() {
   JointSpeeds speeds;
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto& bounds = kJointBounds[j];
-    speeds[j] = std::min(bounds.max_jog, StepsPerSecond{bounds.max_speed.value / 4});
+    speeds[j] = std::min(kJoints[j].max_jog, StepsPerSecond{kJoints[j].max_speed.value / 4});
   }
   return speeds;
 }

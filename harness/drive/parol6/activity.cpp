@@ -20,7 +20,6 @@ namespace {
 using namespace std::chrono_literals;
 using Ending = Activity::Ending;
 
-constexpr Duration kPeriod = 10ms;
 /// Time for a frame to the board, and for telemetry back.
 constexpr Duration kToShow = 100ms;
 constexpr Duration kLongestHoming = 60s;
@@ -143,7 +142,7 @@ class JogFor final : public JointJog {
   std::optional<Ending> advance(Drive& drive, Instant now) override {
     const auto position = follow(drive, now);
     // What is asked for now leaves with the next frame.
-    if (now + kPeriod - began() < time_) return std::nullopt;
+    if (now + kFramePeriod - began() < time_) return std::nullopt;
     if (!std::exchange(is_stopped_, true)) drive.idle();
     if (stillness_.observe(now, position) < kToStand) return std::nullopt;
     const auto way = position - start();
@@ -163,7 +162,7 @@ class GoTo final : public Activity {
  private:
   /// Time goes on by periods, so that a late cycle does not make a leap.
   std::optional<Ending> advance(Drive& drive, Instant /*now*/) override {
-    elapsed_ += kPeriod;
+    elapsed_ += kFramePeriod;
     const auto point = glide_.at(elapsed_);
     const auto& positions = drive.telemetry()->position;
     const bool has_arrived = elapsed_ >= glide_.duration() && positions == glide_.goal();
@@ -232,10 +231,9 @@ class Outputs final : public Activity {
  private:
   std::optional<Ending> advance(Drive& drive, Instant now) override {
     if (!began_) began_ = now;
-    constexpr std::uint8_t kBoth = io_flag::kOut1 | io_flag::kOut2;
-    const auto shown = static_cast<std::uint8_t>(drive.telemetry()->io & kBoth);
+    const auto shown = static_cast<std::uint8_t>(drive.telemetry()->io & io_flag::kOutputs);
     // The first step comes before the answer to the frame that switched.
-    const bool may_be_old = now - *began_ < 2 * kPeriod;
+    const bool may_be_old = now - *began_ < 2 * kFramePeriod;
     if (may_be_old || (shown != flags_ && now - *began_ < 500ms)) return std::nullopt;
     const auto text =
         fmt::format("out1 is {}, out2 is {}", (shown & io_flag::kOut1) != 0 ? "on" : "off",
@@ -325,7 +323,7 @@ class Wait final : public Activity {
  private:
   std::optional<Ending> advance(Drive& /*drive*/, Instant now) override {
     if (!began_) began_ = now;
-    if (now + kPeriod - *began_ < time_) return std::nullopt;
+    if (now + kFramePeriod - *began_ < time_) return std::nullopt;
     return done(fmt::format("waited {:g} s", seconds(time_)));
   }
 
@@ -436,12 +434,12 @@ std::unique_ptr<Activity> begin_gripper_move(Drive& drive, const GripperSetPoint
 }
 
 std::unique_ptr<Activity> begin_gripper_calibration(Drive& drive) {
-  tell_gripper(drive, 1);
+  tell_gripper(drive, gripper_mode::kCalibrate);
   return std::make_unique<Calibration>();
 }
 
 std::unique_ptr<Activity> begin_gripper_clear(Drive& drive) {
-  tell_gripper(drive, 2);
+  tell_gripper(drive, gripper_mode::kClearError);
   return std::make_unique<GripperClear>();
 }
 

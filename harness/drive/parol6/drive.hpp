@@ -56,7 +56,7 @@ struct DriveEvent {
 /// emergency stop latches here because the board only reports it (docs/spec/parol6.md).
 class Drive {
  public:
-  explicit Drive(Duration period = std::chrono::milliseconds{10}) noexcept : period_{period} {}
+  explicit Drive(Duration period = kFramePeriod) noexcept : period_{period} {}
 
   // Requests; each replaces the one before and leaves with the next frame. `kRefused` while the
   // emergency stop is latched, but for `enable`, `disable` and `idle`.

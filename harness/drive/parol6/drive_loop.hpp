@@ -15,8 +15,7 @@ namespace armjig::parol6::drive {
 /// has it. For one thread.
 class DriveLoop {
  public:
-  DriveLoop(StreamPort& port, Drive& drive,
-            Duration period = std::chrono::milliseconds{10}) noexcept
+  DriveLoop(StreamPort& port, Drive& drive, Duration period = kFramePeriod) noexcept
       : port_{port}, drive_{drive}, schedule_{port.now(), period} {}
 
   /// Waits for the next deadline, handing what arrives to the drive, then sends its frame. Errors

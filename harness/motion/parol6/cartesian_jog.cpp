@@ -54,11 +54,11 @@ tl::expected<JointSpeeds, Refusal> CartesianJogger::speeds(const CartesianJog& j
   JointSpeeds speeds;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const double speed = step_rate_of(j, (*wanted)[static_cast<Eigen::Index>(j)]);
-    const double limit = kJointRanges[j].max_jog_speed.value;
+    const double limit = kJoints[j].max_jog.value;
     if (std::abs(speed) > limit) {
       return tl::unexpected{Refusal{Refusal::Reason::kTooFast, j, speed, limit}};
     }
-    const auto& range = kJointRanges[j];
+    const auto& range = kJoints[j];
     const double end = (speed > 0 ? range.upper : range.lower).value;
     const double angle = degrees_of(j, now[j]);
     speeds[j] = StepsPerSecond{cut_off(speed)};

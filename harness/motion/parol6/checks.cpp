@@ -28,8 +28,8 @@ tl::unexpected<Refusal> impossible(double duration) noexcept {
 
 std::optional<Refusal> check_limits(const JointSteps& goal) noexcept {
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto lower = kJointRanges[j].lower.value;
-    const auto upper = kJointRanges[j].upper.value;
+    const auto lower = kJoints[j].lower.value;
+    const auto upper = kJoints[j].upper.value;
     const bool is_below = goal[j].value < nearest_step(steps_of_degrees(j, lower));
     const bool is_above = goal[j].value > nearest_step(steps_of_degrees(j, upper));
     if (is_below || is_above) {
@@ -63,8 +63,8 @@ tl::expected<arm::SixJoints, Refusal> reach(const arm::Arm& arm, const arm::Sphe
 }
 
 std::optional<Refusal> check_peak(std::size_t joint, const Peak& peak) noexcept {
-  const double max_speed = kJointRanges[joint].max_speed.value;
-  const double max_acceleration = kJointRanges[joint].max_acceleration;
+  const double max_speed = kJoints[joint].max_speed.value;
+  const double max_acceleration = kPlannedJoints[joint].max_acceleration;
   if (std::abs(peak.speed) > max_speed * kRounding) {
     return Refusal{Refusal::Reason::kTooFast, joint, peak.speed, max_speed, peak.time};
   }

@@ -16,7 +16,7 @@ namespace {
 /// The limits themselves are refused: J5 cannot be sent to 90 degrees.
 std::optional<Refusal> check_open_range(const arm::SixJoints& target) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto& range = kJointRanges[j];
+    const auto& range = kJoints[j];
     const bool is_below = target[j] <= to_radians(range.lower.value);
     const bool is_above = target[j] >= to_radians(range.upper.value);
     if (is_below || is_above) {
@@ -129,7 +129,7 @@ double cruise_of(double way, const Grid& grid) noexcept {
 std::optional<Refusal> check_speed(const SetPoint& set_point, double time) noexcept {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto speed = set_point.speed[j].value;
-    const auto limit = kJointRanges[j].max_speed.value;
+    const auto limit = kJoints[j].max_speed.value;
     if (std::abs(speed) > limit) {
       return Refusal{Refusal::Reason::kTooFast, j, static_cast<double>(speed),
                      static_cast<double>(limit), time};
@@ -149,7 +149,7 @@ tl::expected<Plan, Refusal> plan_at_pace(const CommanderTarget& target, const Jo
   };
   // The time of the others is a division by the leading joint's, which may have no step to go.
   if (way_of(leading) == 0 && target.steps != start) return impossible(0);
-  const double top = kJointRanges[leading].max_speed.value;
+  const double top = kJoints[leading].max_speed.value;
   const double v = std::trunc(kMinSpeed.value + speed / 100 * (top - kMinSpeed.value));
   const double a = kMinAcceleration + acceleration / 100 * (kMaxAcceleration - kMinAcceleration);
   const auto grid = grid_of(std::abs(way_of(leading)), v, a);

@@ -49,7 +49,7 @@ std::optional<Refusal> stop_at(const arm::SixJoints& before, const CommanderIkAn
   }
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const double speed = set_point.speed[j].value;
-    const double limit = kJointRanges[j].max_speed.value;
+    const double limit = kJoints[j].max_speed.value;
     if (speed > limit) return Refusal{Refusal::Reason::kTooFast, j, speed, limit, time};
   }
   return std::nullopt;

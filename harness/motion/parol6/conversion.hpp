@@ -16,9 +16,6 @@
 /// cut off, the last bit of a double decides about a step.
 namespace armjig::parol6::planning {
 
-inline constexpr std::array<double, kJointCount> kReductions{6.4, 20.0, 20.0 * 38.0 / 42.0,
-                                                             4.0, 4.0,  10.0};
-inline constexpr double kMotorStepsPerTurn = 6400.0;
 inline constexpr double kDegreesPerMotorStep = 360.0 / kMotorStepsPerTurn;
 inline constexpr double kRadiansPerMotorStep = 2 * std::numbers::pi / kMotorStepsPerTurn;
 
@@ -30,17 +27,17 @@ inline constexpr double kRadiansPerMotorStep = 2 * std::numbers::pi / kMotorStep
 }
 
 [[nodiscard]] constexpr double steps_of_degrees(std::size_t joint, double degrees) noexcept {
-  return degrees / kDegreesPerMotorStep * kReductions[joint];
+  return degrees / kDegreesPerMotorStep * kJoints[joint].reduction;
 }
 [[nodiscard]] constexpr double steps_of_radians(std::size_t joint, double radians) noexcept {
   return steps_of_degrees(joint, to_degrees(radians));
 }
 /// Of speeds, rad/s to steps/s.
 [[nodiscard]] constexpr double step_rate_of(std::size_t joint, double radians) noexcept {
-  return radians / kRadiansPerMotorStep * kReductions[joint];
+  return radians / kRadiansPerMotorStep * kJoints[joint].reduction;
 }
 [[nodiscard]] constexpr double degrees_of(std::size_t joint, Steps position) noexcept {
-  return position.value * kDegreesPerMotorStep / kReductions[joint];
+  return position.value * kDegreesPerMotorStep / kJoints[joint].reduction;
 }
 [[nodiscard]] constexpr double radians_of(std::size_t joint, Steps position) noexcept {
   return to_radians(degrees_of(joint, position));
@@ -51,13 +48,10 @@ inline constexpr double kRadiansPerMotorStep = 2 * std::numbers::pi / kMotorStep
   return joints;
 }
 
-/// The 24 bits of a frame, and more than any joint can do.
-inline constexpr double kMostSteps = 8'388'607;
-
 /// What a set-point has: an integer number, the rest cut off toward zero. Beyond what a frame can
 /// hold, the most that it can.
 [[nodiscard]] constexpr std::int32_t cut_off(double steps) noexcept {
-  return static_cast<std::int32_t>(std::clamp(steps, -kMostSteps, kMostSteps));
+  return static_cast<std::int32_t>(std::clamp<double>(steps, -kMostSteps, kMostSteps));
 }
 /// The nearest step, of two equally near the even one: what the board's own constants and the
 /// Python API have.

@@ -28,7 +28,7 @@ tl::expected<Pace, Refusal> pace_of(const Timing& timing, std::size_t joint) {
   for (const double percent : {speed, acceleration}) {
     if (const auto refusal = check_percent(percent)) return tl::unexpected{*refusal};
   }
-  const double range = kJointRanges[joint].max_speed.value - kMinSpeed.value;
+  const double range = kJoints[joint].max_speed.value - kMinSpeed.value;
   return Pace{std::trunc(kMinSpeed.value + speed / 100 * range),
               kMinAcceleration + acceleration / 100 * (kMaxAcceleration - kMinAcceleration)};
 }

@@ -19,7 +19,7 @@ namespace {
 
 /// Radians in a tick.
 double fastest_step(std::size_t joint) noexcept {
-  return kJointRanges[joint].max_speed.value * kTick / steps_of_radians(joint, 1);
+  return kJoints[joint].max_speed.value * kTick / steps_of_radians(joint, 1);
 }
 
 /// As far towards `wanted` as every joint can go in a tick.

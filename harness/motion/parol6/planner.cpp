@@ -63,7 +63,7 @@ Planned plan_commander_pose(const Move& move, const JointSteps& start,
                             const PlannerSettings& settings) {
   arm::SixJoints seed{};
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    seed[j] = to_radians(kJointRanges[j].commander_seed.value);
+    seed[j] = to_radians(kPlannedJoints[j].commander_seed.value);
   }
   const auto pose = pose_of(move.target, settings.convention);
   const auto answer = commander_ik(arm::parol6_commander(), pose, seed);

@@ -20,16 +20,20 @@ constexpr BitNames kGripperCommandBits{"activate", "go_to", "estop", "release_di
 constexpr BitNames kGripperStatusBits{"activated",  "go_to",         "object_bit0", "object_bit1",
                                       "temp_error", "timeout_error", "estop_error", "calibrated"};
 
-constexpr std::array<NamedValue, 8> kCommands{{{69, "demo"},
-                                               {100, "home"},
-                                               {101, "enable"},
-                                               {102, "disable"},
-                                               {103, "clear_error"},
-                                               {123, "jog"},
-                                               {156, "go_to"},
-                                               {255, "idle"}}};
-constexpr std::array<NamedValue, 3> kGripperModes{
-    {{0, "move"}, {1, "calibrate"}, {2, "clear_error"}}};
+constexpr NamedValue named(Command command, std::string_view name) noexcept {
+  return {static_cast<std::int64_t>(command), name};
+}
+constexpr std::array kCommands{named(Command::kDemo, "demo"),
+                               named(Command::kHome, "home"),
+                               named(Command::kEnable, "enable"),
+                               named(Command::kDisable, "disable"),
+                               named(Command::kClearError, "clear_error"),
+                               named(Command::kJog, "jog"),
+                               named(Command::kGoTo, "go_to"),
+                               named(Command::kIdle, "idle")};
+constexpr std::array kGripperModes{NamedValue{gripper_mode::kMove, "move"},
+                                   NamedValue{gripper_mode::kCalibrate, "calibrate"},
+                                   NamedValue{gripper_mode::kClearError, "clear_error"}};
 
 constexpr Field literal(std::string_view name, std::uint16_t offset, std::uint8_t width,
                         std::int64_t value) noexcept {
@@ -38,7 +42,7 @@ constexpr Field literal(std::string_view name, std::uint16_t offset, std::uint8_
 
 constexpr std::array kCommandFields{
     literal("start", 0, 3, 0xFFFFFF),
-    literal("length", 3, 1, 52),
+    literal("length", 3, 1, kCommandPayloadSize),
     Field{"position.j1", 4, 3, kSigned, "steps", "commanded position, used by go_to"},
     Field{"position.j2", 7, 3, kSigned, "steps", "commanded position, used by go_to"},
     Field{"position.j3", 10, 3, kSigned, "steps", "commanded position, used by go_to"},
@@ -67,7 +71,7 @@ constexpr std::array kCommandFields{
 
 constexpr std::array kTelemetryFields{
     literal("start", 0, 3, 0xFFFFFF),
-    literal("length", 3, 1, 56),
+    literal("length", 3, 1, kTelemetryPayloadSize),
     Field{"position.j1", 4, 3, kSigned, "steps", "step counter"},
     Field{"position.j2", 7, 3, kSigned, "steps", "step counter"},
     Field{"position.j3", 10, 3, kSigned, "steps", "step counter"},

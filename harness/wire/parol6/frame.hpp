@@ -8,6 +8,7 @@
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/quantity.hpp"
+#include "harness/core/time.hpp"
 
 /// The serial protocol of the PAROL6 control board (docs/spec/parol6.md). Every frame is
 /// `FF FF FF LEN payload[LEN]`; the payload ends with a check byte and `01 02`. Numbers are
@@ -20,7 +21,8 @@ using JointSpeeds = std::array<StepsPerSecond, kJointCount>;
 
 inline constexpr std::byte kStartByte{0xFF};
 inline constexpr std::size_t kStartSize = 3;
-inline constexpr std::size_t kHeaderSize = 4;  ///< start bytes and length byte
+inline constexpr std::size_t kHeaderSize = 4;        ///< start bytes and length byte
+inline constexpr std::size_t kLongestPayload = 255;  ///< that a length byte can say
 inline constexpr std::array kEndBytes{std::byte{0x01}, std::byte{0x02}};
 
 inline constexpr std::size_t kCommandPayloadSize = 52;
@@ -32,10 +34,19 @@ inline constexpr std::size_t kTelemetryPayloadSize = 56;
 inline constexpr std::size_t kTelemetryFrameSize = kHeaderSize + kTelemetryPayloadSize;
 inline constexpr std::size_t kTelemetryBodySize = kTelemetryPayloadSize - kEndBytes.size();
 
+/// Positions and speeds have 24 bits; the lowest is one less than minus this.
+inline constexpr std::int32_t kMostSteps = 8'388'607;
+
 /// The check byte is a constant: the board and its document have `kCheckBoard`, the host programs
 /// send `kCheckHost`. No polynomial exists.
 inline constexpr std::uint8_t kCheckBoard = 0xD4;
 inline constexpr std::uint8_t kCheckHost = 0xE4;
+
+/// Hosts send 100 frames a second.
+inline constexpr Duration kFramePeriod = std::chrono::milliseconds{10};
+
+/// Of the timer behind `TelemetryFrame::timing`, which wraps at 16 bits: 90 MHz / 128.
+inline constexpr std::int64_t kTicksPerSecond = 703'125;
 
 /// Decimal on the wire although the document writes them with a 0x prefix. Any byte is possible;
 /// the ones without a name do nothing.
@@ -60,6 +71,7 @@ inline constexpr std::uint8_t kIn1 = flag(0);
 inline constexpr std::uint8_t kIn2 = flag(1);
 inline constexpr std::uint8_t kOut1 = flag(2);
 inline constexpr std::uint8_t kOut2 = flag(3);
+inline constexpr std::uint8_t kOutputs = kOut1 | kOut2;
 inline constexpr std::uint8_t kEstopReleased = flag(4);
 inline constexpr std::uint8_t kSpare = 0x07;  ///< always set in telemetry
 }  // namespace io_flag
@@ -70,11 +82,20 @@ struct GripperSetPoint {
   std::int16_t speed{};     ///< 0 to 255; the board passes on the low byte
   Milliamperes current{};
   std::uint8_t command{};  ///< `gripper_command` flags
-  std::uint8_t mode{};     ///< 0 move, 1 calibrate, 2 clear error
+  std::uint8_t mode{};     ///< `gripper_mode`
   std::uint8_t id{};       ///< CAN node
 
   friend bool operator==(const GripperSetPoint&, const GripperSetPoint&) = default;
 };
+
+/// The highest current that the document allows.
+inline constexpr Milliamperes kMaxGripperCurrent{1300};
+
+namespace gripper_mode {
+inline constexpr std::uint8_t kMove = 0;
+inline constexpr std::uint8_t kCalibrate = 1;
+inline constexpr std::uint8_t kClearError = 2;
+}  // namespace gripper_mode
 
 namespace gripper_command {
 inline constexpr std::uint8_t kActivate = flag(0);
@@ -94,13 +115,13 @@ inline constexpr std::uint8_t kEstopError = flag(6);
 inline constexpr std::uint8_t kCalibrated = flag(7);
 }  // namespace gripper_status
 
-/// One frame from host to board. Positions and speeds keep 24 bits on the wire.
+/// One frame from host to board.
 struct CommandFrame {
   std::array<Steps, kJointCount> position{};
   std::array<StepsPerSecond, kJointCount> speed{};
   Command command{};
   std::uint8_t affected_joints{};
-  std::uint8_t in_out{};   ///< the board reads `kOut1` and `kOut2`
+  std::uint8_t in_out{};   ///< the board reads `kOutputs`
   std::uint8_t timeout{};  ///< milliseconds, 0 off; the shipped board ignores it
   GripperSetPoint gripper{};
   std::uint8_t check = kCheckBoard;
@@ -128,7 +149,7 @@ struct TelemetryFrame {
   std::uint8_t io{};     ///< `io_flag`
   std::uint8_t temperature_error{};
   std::uint8_t position_error{};
-  std::uint16_t timing{};  ///< 703,125 Hz ticks since the frame before, modulo 65536
+  std::uint16_t timing{};  ///< `kTicksPerSecond` since the frame before, modulo 65536
   std::uint8_t timeout_error{};
   Command echo{};  ///< of the frame being answered; the document calls it xtr2
   GripperReport gripper{};

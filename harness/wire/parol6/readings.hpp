@@ -7,8 +7,21 @@
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-/// What the numbers of telemetry say.
+/// What the numbers in frames say.
 namespace armjig::parol6 {
+
+/// Drives joints until something ends it, if the board obeys.
+[[nodiscard]] constexpr bool moves(Command command) noexcept {
+  using enum Command;
+  return command == kJog || command == kGoTo || command == kHome || command == kDemo;
+}
+
+/// Ends a homing that is under way. Idle does not.
+[[nodiscard]] constexpr bool ends_homing(Command command) noexcept {
+  using enum Command;
+  return command == kEnable || command == kDisable || command == kClearError || command == kJog ||
+         command == kGoTo;
+}
 
 /// What the gripper has between its fingers.
 enum class GripperObject : std::uint8_t {
@@ -29,7 +42,7 @@ enum class GripperObject : std::uint8_t {
 /// The time between two accepted frames, as the board's timer has it, to the nanosecond below. It
 /// wraps after 93.2 ms.
 [[nodiscard]] constexpr Duration interval_of(std::uint16_t timing) noexcept {
-  return Duration{std::int64_t{timing} * 1'000'000'000 / 703'125};
+  return Duration{std::int64_t{timing} * 1'000'000'000 / kTicksPerSecond};
 }
 
 [[nodiscard]] constexpr bool is_homed(const TelemetryFrame& frame, std::size_t joint) noexcept {

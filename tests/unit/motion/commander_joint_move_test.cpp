@@ -27,7 +27,7 @@ Timing at_pace(double speed, double acceleration) {
   return {.speed = speed, .acceleration = acceleration};
 }
 
-Plan planned(std::array<double, 6> degrees, Timing timing, JointSteps start = standby()) {
+Plan planned(std::array<double, 6> degrees, Timing timing, JointSteps start = kStandby) {
   const auto result = plan(joint_move(degrees, timing), start, kCommander);
   EXPECT_TRUE(result.has_value());
   return result.value_or(Plan{});
@@ -83,7 +83,7 @@ TEST(CommanderJointMove, CutsSpeedsOfATimedTrapezoidToMultiplesOfItsSamples) {
 }
 
 TEST(CommanderJointMove, PlaysTheDocumentsExperiment) {
-  auto start = standby();
+  auto start = kStandby;
   start[5] = Steps{46222};
   const auto polynomial = planned({90, -90, 180, 0, 0, 180}, in_time(2), start);
   EXPECT_EQ(told(polynomial, 1, 5), (Told{46221, -5}));
@@ -144,7 +144,7 @@ TEST(CommanderJointMove, HasDefaultsForSpeedAndAccelerationTogetherOnly) {
 constexpr std::array<double, 6> kAside{80, -90, 180, 0, 0, 180};
 
 Refusal refused(std::array<double, 6> degrees, Timing timing) {
-  const auto result = plan(joint_move(degrees, timing), standby(), kCommander);
+  const auto result = plan(joint_move(degrees, timing), kStandby, kCommander);
   EXPECT_FALSE(result.has_value());
   return result.has_value() ? Refusal{} : result.error();
 }

@@ -20,7 +20,7 @@ constexpr PlannerSettings kCommander{.rules = Rules::kCommander};
 arm::SixJoints commander_seed() {
   arm::SixJoints seed{};
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    seed[j] = to_radians(kJointRanges[j].commander_seed.value);
+    seed[j] = to_radians(kPlannedJoints[j].commander_seed.value);
   }
   return seed;
 }
@@ -68,7 +68,7 @@ TEST(CommanderIk, LeavesAGoodSeedUnwrapped) {
 
 TEST(CommanderPoseMove, RefusesANegativeJointSix) {
   const Move move{.kind = Move::Kind::kPose, .target = {0, 263.23, 161.241, -90, 0, -89.499}};
-  const auto result = plan(move, standby(), kCommander);
+  const auto result = plan(move, kStandby, kCommander);
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().reason, Refusal::Reason::kOutOfLimits);
   EXPECT_EQ(result.error().joint, 5U);
@@ -78,7 +78,7 @@ TEST(CommanderPoseMove, EndsWithinAStepOfItsPosture) {
   const Move move{.kind = Move::Kind::kPose,
                   .target = {81.565, 262.804, 161.047, -90.135, -0.029, -89.578},
                   .timing = {.duration = 4}};
-  const auto result = plan(move, standby(), kCommander);
+  const auto result = plan(move, kStandby, kCommander);
   ASSERT_TRUE(result.has_value());
   const arm::SixJoints expected{67.7989, -80.3335, 148.9335, 31.8237, 45.8443, 156.5831};
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -94,7 +94,7 @@ struct Expected {
 
 TEST(CommanderLine, IsTheReferencesLineFromStandby) {
   const Move move{.kind = Move::Kind::kLine, .target = {0, 263.23, 161.241, -90, 0, -89.499}};
-  const auto result = plan(move, standby(), kCommander);
+  const auto result = plan(move, kStandby, kCommander);
   ASSERT_TRUE(result.has_value());
   EXPECT_FALSE(result->stop);
   ASSERT_EQ(result->set_points.size(), 359U);
@@ -135,7 +135,7 @@ TEST(CommanderLine, PutsASecondTrapezoidOnTopOfItsProfile) {
 TEST(CommanderLine, LooksAtPercentsOnlyIfBothAreThereAndNoTimeIs) {
   const auto result = [](Timing timing) {
     const Move move{.kind = Move::Kind::kToolLine, .timing = timing};
-    return plan(move, standby(), kCommander);
+    return plan(move, kStandby, kCommander);
   };
   EXPECT_EQ(result({.speed = 101, .acceleration = 50}).error().reason,
             Refusal::Reason::kPercentOutOfRange);
@@ -150,7 +150,7 @@ TEST(CommanderLine, LooksAtPercentsOnlyIfBothAreThereAndNoTimeIs) {
 // K6: along the tool's x axis, which points up there.
 TEST(CommanderLine, GoesAlongTheAxesOfTheTool) {
   const Move move{.kind = Move::Kind::kToolLine, .target = {-80, 0, 0, 0, 0, 0}};
-  const auto result = plan(move, standby(), kCommander);
+  const auto result = plan(move, kStandby, kCommander);
   ASSERT_TRUE(result.has_value());
   ASSERT_FALSE(result->stop);
   const auto end = forward(arm::parol6_commander(), radians_of(result->set_points.back().position));
@@ -162,7 +162,7 @@ TEST(CommanderLine, GoesAlongTheAxesOfTheTool) {
 TEST(CommanderLine, CountsItsSamplesOnTheGridOfItsDuration) {
   const auto count = [](double seconds) {
     const Move move{.kind = Move::Kind::kToolLine, .timing = {.duration = seconds}};
-    return plan(move, standby(), kCommander)->set_points.size() + 1;
+    return plan(move, kStandby, kCommander)->set_points.size() + 1;
   };
   EXPECT_EQ(count(0.29), 28U);
   EXPECT_EQ(count(0.57), 56U);
@@ -171,7 +171,7 @@ TEST(CommanderLine, CountsItsSamplesOnTheGridOfItsDuration) {
 
 TEST(CommanderLine, SendsTheSetPointThatDidNotConvergeAndStops) {
   const Move move{.kind = Move::Kind::kLine, .target = {900, 0, 200, 0, 90, 180}};
-  const auto result = plan(move, standby(), kCommander);
+  const auto result = plan(move, kStandby, kCommander);
   ASSERT_TRUE(result.has_value());
   ASSERT_TRUE(result->stop);
   EXPECT_EQ(result->stop->reason, Refusal::Reason::kNotConverged);
@@ -195,7 +195,7 @@ tl::expected<Plan, Refusal> turned(double degrees) {
   const Move move{.kind = Move::Kind::kToolLine,
                   .target = {0, 0, 0, 0, 0, degrees},
                   .timing = {.duration = 4.0}};
-  return plan(move, standby(), kCommander);
+  return plan(move, kStandby, kCommander);
 }
 
 TEST(CommanderLine, TellsOfTheLongWayRoundAndRefusesAWholeTurn) {
@@ -214,7 +214,7 @@ TEST(CommanderJointMove, RefusesNumbersThatNoFrameHolds) {
                   .timing = {.duration = 0.03}};
   auto settings = kCommander;
   settings.limits = LimitCheck::kIgnored;
-  const auto planned = plan(move, standby(), settings);
+  const auto planned = plan(move, kStandby, settings);
   ASSERT_FALSE(planned);
   EXPECT_EQ(planned.error().reason, Refusal::Reason::kBeyondFrame);
   EXPECT_EQ(describe(planned.error()),

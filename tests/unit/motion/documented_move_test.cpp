@@ -50,25 +50,25 @@ Move along_tool(double x, double y, double z, Timing timing = {}) {
 TEST(DocumentedJointMove, BeginsAndEndsOnTheExactStep) {
   for (const auto law : {Law::kPolynomial, Law::kTrapezoid}) {
     const auto move =
-        planned(to_joints({0, -60, 200, 30, 45, 90}, {.duration = 4, .law = law}), standby());
+        planned(to_joints({0, -60, 200, 30, 45, 90}, {.duration = 4, .law = law}), kStandby);
     ASSERT_EQ(move.set_points.size(), 401U);
-    EXPECT_EQ(move.set_points.front(), (SetPoint{standby(), {}}));
+    EXPECT_EQ(move.set_points.front(), (SetPoint{kStandby, {}}));
     EXPECT_EQ(move.set_points.back(), (SetPoint{at({0, -60, 200, 30, 45, 90}), {}}));
   }
 }
 
 TEST(DocumentedJointMove, ArrivesWithAllJointsAtOnce) {
-  const auto move = planned(to_joints({0, -60, 200, 30, 45, 90}, {.duration = 4}), standby());
+  const auto move = planned(to_joints({0, -60, 200, 30, 45, 90}, {.duration = 4}), kStandby);
   const auto& middle = move.set_points.at(200);
   const auto goal = at({0, -60, 200, 30, 45, 90});
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    EXPECT_NEAR(middle.position[j].value, (standby()[j].value + goal[j].value) / 2.0, 1);
+    EXPECT_NEAR(middle.position[j].value, (kStandby[j].value + goal[j].value) / 2.0, 1);
   }
 }
 
 TEST(DocumentedJointMove, IsAsFastAsTheLeadingJointMay) {
   const auto move =
-      planned(to_joints({0, -90, 180, 0, 0, 180}, {.speed = 50, .acceleration = 50}), standby());
+      planned(to_joints({0, -90, 180, 0, 0, 180}, {.speed = 50, .acceleration = 50}), kStandby);
   EXPECT_EQ(move.leading_joint, 0U);
   int fastest = 0;
   for (const auto& [position, speed] : move.set_points) {
@@ -80,33 +80,33 @@ TEST(DocumentedJointMove, IsAsFastAsTheLeadingJointMay) {
 
 TEST(DocumentedJointMove, IsATriangleOnAShortWay) {
   const auto move =
-      planned(to_joints({89, -90, 180, 0, 0, 180}, {.speed = 50, .acceleration = 50}), standby());
+      planned(to_joints({89, -90, 180, 0, 0, 180}, {.speed = 50, .acceleration = 50}), kStandby);
   // 114 steps at 16050 steps/s^2: 2 sqrt(114 / 16050) s, on to the next frame
   EXPECT_NEAR(move.duration, 0.17, 1e-9);
   EXPECT_EQ(move.set_points.back().position, at({89, -90, 180, 0, 0, 180}));
 }
 
 TEST(DocumentedJointMove, WithNoWayToGoIsStillAMove) {
-  const auto move = planned(to_joints({90, -90, 180.0007, 0, 0, 180}, {}), standby());
+  const auto move = planned(to_joints({90, -90, 180.0007, 0, 0, 180}, {}), kStandby);
   ASSERT_FALSE(move.set_points.empty());
-  for (const auto& set_point : move.set_points) EXPECT_EQ(set_point, (SetPoint{standby(), {}}));
+  for (const auto& set_point : move.set_points) EXPECT_EQ(set_point, (SetPoint{kStandby, {}}));
 }
 
 TEST(DocumentedJointMove, ReachesTheLimitsThemselves) {
-  const auto move = planned(to_joints({90, -90, 180, 0, 90, 360}, {.duration = 4}), standby());
+  const auto move = planned(to_joints({90, -90, 180, 0, 90, 360}, {.duration = 4}), kStandby);
   EXPECT_EQ(move.set_points.back().position[4], Steps{6400});
   EXPECT_EQ(move.set_points.back().position[5], Steps{64000});
 }
 
 TEST(DocumentedJointMove, IsRefusedBeyondALimit) {
-  const auto refusal = refused(to_joints({90, -90, 180, 0, 90.1, 180}, {.duration = 4}), standby());
+  const auto refusal = refused(to_joints({90, -90, 180, 0, 90.1, 180}, {.duration = 4}), kStandby);
   EXPECT_EQ(refusal.reason, Reason::kOutOfLimits);
   EXPECT_EQ(refusal.joint, 4U);
   EXPECT_EQ(refusal.limit, 90);
 }
 
 TEST(DocumentedJointMove, IsRefusedTooFast) {
-  const auto refusal = refused(to_joints({0, -90, 180, 0, 0, 180}, {.duration = 2}), standby());
+  const auto refusal = refused(to_joints({0, -90, 180, 0, 0, 180}, {.duration = 2}), kStandby);
   EXPECT_EQ(refusal.reason, Reason::kTooFast);
   EXPECT_EQ(refusal.joint, 0U);
   EXPECT_NEAR(std::abs(refusal.value), 1.875 * 10240 / 2, 1e-6);
@@ -114,7 +114,7 @@ TEST(DocumentedJointMove, IsRefusedTooFast) {
 
 TEST(DocumentedJointMove, IsRefusedTooHard) {
   // 1067 steps in 0.4 s: at most 5000 steps/s, but 5.77 * 1067 / 0.16 steps/s^2 of joint 5
-  const auto refusal = refused(to_joints({90, -90, 180, 0, 15, 180}, {.duration = 0.4}), standby());
+  const auto refusal = refused(to_joints({90, -90, 180, 0, 15, 180}, {.duration = 0.4}), kStandby);
   EXPECT_EQ(refusal.reason, Reason::kTooMuchAcceleration);
   EXPECT_EQ(refusal.joint, 4U);
 }
@@ -122,14 +122,14 @@ TEST(DocumentedJointMove, IsRefusedTooHard) {
 TEST(DocumentedJointMove, IsRefusedInNoTime) {
   for (const double seconds : {0.0, -1.0, 0.004, 1e9}) {
     const auto refusal =
-        refused(to_joints({0, -90, 180, 0, 0, 180}, {.duration = seconds}), standby());
+        refused(to_joints({0, -90, 180, 0, 0, 180}, {.duration = seconds}), kStandby);
     EXPECT_EQ(refusal.reason, Reason::kImpossibleDuration) << seconds;
   }
 }
 
 TEST(DocumentedJointMove, IsRefusedAbove100Percent) {
   for (const auto& timing : {Timing{.speed = 101}, Timing{.acceleration = -1}}) {
-    const auto refusal = refused(to_joints({0, -90, 180, 0, 0, 180}, timing), standby());
+    const auto refusal = refused(to_joints({0, -90, 180, 0, 0, 180}, timing), kStandby);
     EXPECT_EQ(refusal.reason, Reason::kPercentOutOfRange);
   }
 }
@@ -138,7 +138,7 @@ TEST(DocumentedPoseMove, EndsAtThePose) {
   const Move move{.kind = Move::Kind::kPose,
                   .target = {81.565, 262.804, 161.047, -90.135, -0.029, -89.578},
                   .timing = {.duration = 4}};
-  const auto end = pose_at(planned(move, standby()).set_points.back().position);
+  const auto end = pose_at(planned(move, kStandby).set_points.back().position);
   EXPECT_NEAR(1000 * end.position.x, 81.565, 0.1);
   EXPECT_NEAR(1000 * end.position.y, 262.804, 0.1);
   EXPECT_NEAR(1000 * end.position.z, 161.047, 0.1);
@@ -153,20 +153,20 @@ TEST(DocumentedPoseMove, ReadsItsAnglesInTheConventionAskedFor) {
                   .target = {0, 263.23, 161.241, -89.499, 0, -90},
                   .timing = {.duration = 4}};
   const auto end = pose_at(
-      planned(move, standby(), {.convention = arm::Convention::kXyz}).set_points.back().position);
+      planned(move, kStandby, {.convention = arm::Convention::kXyz}).set_points.back().position);
   const auto angles = angles_of(end.rotation, arm::Convention::kXyz);
   EXPECT_NEAR(to_degrees(angles.rx), -89.499, 0.05);
 }
 
 TEST(DocumentedPoseMove, IsRefusedOutOfReach) {
   const Move move{.kind = Move::Kind::kPose, .target = {600, 0, 200, 0, 0, 0}};
-  EXPECT_EQ(refused(move, standby()).reason, Reason::kUnreachable);
+  EXPECT_EQ(refused(move, kStandby).reason, Reason::kUnreachable);
 }
 
 TEST(DocumentedPoseMove, NamesTheJointWhoseLimitIsInTheWay) {
   // Standby turned half around: joint 1 would have to be at 180 degrees.
   const Move move{.kind = Move::Kind::kPose, .target = {-262.57, 0, 288.75, 0, -90, 0}};
-  const auto refusal = refused(move, standby());
+  const auto refusal = refused(move, kStandby);
   EXPECT_EQ(refusal.reason, Reason::kOutOfLimits);
   EXPECT_TRUE(refusal.joint.has_value());
 }
@@ -244,7 +244,7 @@ TEST(DocumentedLine, OfSpeedsHoldsThePositions) {
 
 TEST(DocumentedLine, LeavesAStraightWristIfItMayAsItIs) {
   const Move move{.kind = Move::Kind::kLine, .target = {0, 263.23, 161.241, -90, 0, -89.499}};
-  const auto line = planned(move, standby());
+  const auto line = planned(move, kStandby);
   EXPECT_FALSE(line.stop);
   ASSERT_FALSE(line.singularities.empty());
   EXPECT_EQ(line.singularities.front().kind, SingularityNote::Kind::kWrist);
@@ -253,7 +253,7 @@ TEST(DocumentedLine, LeavesAStraightWristIfItMayAsItIs) {
 
 TEST(DocumentedLine, IsRefusedToWhereNoPostureIs) {
   const Move move{.kind = Move::Kind::kLine, .target = {700, 0, 300, 0, 90, 180}};
-  EXPECT_EQ(refused(move, standby()).reason, Reason::kUnreachable);
+  EXPECT_EQ(refused(move, kStandby).reason, Reason::kUnreachable);
 }
 
 /// Turns the tool so that the wrist passes straight at a distance of half a degree, where joint 4
@@ -304,7 +304,7 @@ TEST(DocumentedLine, TriesToPassASingularityIfAskedTo) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const int step =
           line.set_points[k].position[j].value - line.set_points[k - 1].position[j].value;
-      EXPECT_LE(std::abs(step), kJointRanges[j].max_speed.value * kTick + 1);
+      EXPECT_LE(std::abs(step), kJoints[j].max_speed.value * kTick + 1);
     }
   }
 }

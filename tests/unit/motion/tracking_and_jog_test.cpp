@@ -115,7 +115,7 @@ TEST(CartesianJog, IsRefusedAtALimit) {
 
 TEST(CartesianJog, IsRefusedWhereTheToolCannotMoveThatWay) {
   const auto refusal = CartesianJogger{}.speeds({JogFrame::kWorld, {.angular = {0, 0, 0.1}}},
-                                                standby());  // the wrist is straight there
+                                                kStandby);  // the wrist is straight there
   ASSERT_FALSE(refusal.has_value());
   EXPECT_EQ(refusal.error().reason, Refusal::Reason::kSingular);
 }

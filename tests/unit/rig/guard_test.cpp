@@ -233,7 +233,7 @@ TEST(GuardedStream, AStopInTheMiddleOfAMessageIsHeard) {
   const test::ByteVector stops{line.written.begin() + static_cast<std::ptrdiff_t>(before),
                                line.written.end()};
   // The shipped board takes what follows for the rest of the frame that was begun.
-  parol6::FirmwareReceiver board;
+  parol6::emulation::FirmwareReceiver board;
   EXPECT_FALSE(board.step(Bytes{frame(Command::kJog)}.first(30)).accepted);
   const auto step = board.step(stops);
   EXPECT_TRUE(step.accepted);
@@ -379,7 +379,7 @@ TEST(GuardedStream, AHomedArmThatJogsAtItsBoundIsStoppedThere) {
     let_pass(*stream, 100ms);
   }
   CommandFrame jog{.command = Command::kJog};
-  jog.speed[0] = parol6::kJointBounds[0].max_jog;
+  jog.speed[0] = parol6::kJoints[0].max_jog;
   const auto bound = parol6::kJointBounds[0].upper.value;
   int frames = 0;
   while (stream->write(encode(jog))) {

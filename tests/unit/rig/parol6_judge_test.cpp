@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "harness/wire/parol6/firmware_receiver.hpp"
+#include "emulators/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 #include "tests/unit/support/bytes.hpp"
 
@@ -15,6 +15,7 @@ namespace armjig::parol6::rig {
 namespace {
 
 using namespace std::chrono_literals;
+using emulation::FirmwareReceiver;
 using ::testing::HasSubstr;
 
 Permissions allowing(std::initializer_list<Hazard> hazards) {
@@ -269,7 +270,7 @@ TEST(Parol6Judge, StoppingLeavesOutputsAndGripperAsTheyAre) {
 
 TEST(Parol6Judge, EachJointHasItsFastestJogBothWays) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto fastest = kJointBounds[j].max_jog.value;
+    const auto fastest = kJoints[j].max_jog.value;
     for (const int sign : {1, -1}) {
       EXPECT_FALSE(Court{Permissions::all()}.judge(jog(j, sign * fastest))) << j;
       EXPECT_TRUE(Court{Permissions::all()}.judge(jog(j, sign * (fastest + 1)))) << j;
@@ -361,7 +362,7 @@ std::optional<std::string> lead(std::size_t j, int step, int delay) {
 
 TEST(Parol6Judge, EachJointMayBeLedAtItsTopSpeedWhateverTheAgeOfTelemetry) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto step = kJointBounds[j].max_speed.value / 100;
+    const auto step = kJoints[j].max_speed.value / 100;
     for (const int delay : {1, 2, 3, 5, 9}) {
       EXPECT_EQ(lead(j, step / 2, delay), std::nullopt) << "j" << j + 1 << ", " << delay;
       EXPECT_EQ(lead(j, j == 3 || j == 4 ? 150 : step, delay), std::nullopt)
@@ -372,7 +373,7 @@ TEST(Parol6Judge, EachJointMayBeLedAtItsTopSpeedWhateverTheAgeOfTelemetry) {
 
 TEST(Parol6Judge, NoJointMayBeLedFasterWhateverTheAgeOfTelemetry) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto step = kJointBounds[j].max_speed.value / 100 * 5 / 4;
+    const auto step = kJoints[j].max_speed.value / 100 * 5 / 4;
     EXPECT_THAT(lead(j, step, 1).value_or(""), HasSubstr("smaller pieces")) << j;
     EXPECT_THAT(lead(j, step, 5).value_or(""), HasSubstr("smaller pieces")) << j;
   }

@@ -23,7 +23,7 @@ inline Program program_of(std::string_view lines, Dialect dialect) {
   return *std::move(program);
 }
 
-inline constexpr auto kStandby = parol6::planning::standby();
+inline constexpr auto kStandby = parol6::kStandby;
 
 /// Its schedule, from standby unless told otherwise; fails the test if there is none.
 inline Schedule schedule_of(const Program& program, const InterpreterSettings& settings = {},

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "harness/wire/parol6/firmware_receiver.hpp"
+#include "emulators/parol6/firmware_receiver.hpp"
 #include "harness/wire/parol6/frame.hpp"
 #include "harness/wire/parol6/splitter.hpp"
 #include "tests/unit/support/allocations.hpp"
@@ -66,7 +66,7 @@ TEST(Heap, IsNotTouchedBySplitting) {
 
 TEST(Heap, IsNotTouchedByTheFirmwareReceiver) {
   const auto stream = traffic();
-  FirmwareReceiver receiver;
+  emulation::FirmwareReceiver receiver;
   std::size_t frames = 0;
   const auto before = test::allocations();
   for (auto rest = Bytes{stream}; !rest.empty();) {

@@ -80,7 +80,7 @@ TEST(GoToWay, BeginsAgainAtTelemetryAfterAnotherCommand) {
 }
 
 TEST(GoToWay, KnowsTheWayBackFromBeyondTheBounds) {
-  constexpr JointBounds kBounds{Steps{0}, Steps{100}, {}, {}};
+  constexpr JointBounds kBounds{Steps{0}, Steps{100}};
   const GoToWay way{kTop};
   const auto leads_out = [&](std::int32_t place, std::int32_t known) {
     return way.leads_out(0, kBounds, Steps{place}, Steps{known});

@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "harness/wire/parol6/joint_bounds.hpp"
+
 namespace armjig::parol6 {
 namespace {
 
@@ -16,6 +18,7 @@ constexpr std::array kStandbySteps{10240, -32000, 57905, 0, 0, 32000};
 TEST(Joint, KnowsTheStepsOfTheStandbyPosition) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     EXPECT_EQ(kJoints[j].position(Degrees{kStandbyDegrees[j]}).value, kStandbySteps[j]) << j;
+    EXPECT_EQ(kStandby[j].value, kStandbySteps[j]) << j;
   }
 }
 
@@ -26,6 +29,20 @@ TEST(Joint, KnowsTheDegreesOfAStep) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     EXPECT_NEAR(kJoints[j].angle(Steps{1}).value, kDegrees[j], 1e-11) << j;
     EXPECT_NEAR(kJoints[j].speed(StepsPerSecond{-1}).value, -kDegrees[j], 1e-11) << j;
+  }
+}
+
+TEST(Joint, HasTheRangesAndSpeedsOfTheGui) {
+  // Reference, limits: the GUI cuts its degrees off to these steps.
+  constexpr std::array kLower{-14000, -51558, 34699, -7500, -6400, 0};
+  constexpr std::array kUpper{14000, -1200, 92604, 7500, 6400, 64000};
+  constexpr std::array kMaxSpeed{6500, 18000, 20000, 22000, 22000, 22000};
+  constexpr std::array kMaxJog{1500, 3000, 3600, 7000, 7000, 18000};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    EXPECT_EQ(kJointBounds[j].lower.value, kLower[j]) << j;
+    EXPECT_EQ(kJointBounds[j].upper.value, kUpper[j]) << j;
+    EXPECT_EQ(kJoints[j].max_speed.value, kMaxSpeed[j]) << j;
+    EXPECT_EQ(kJoints[j].max_jog.value, kMaxJog[j]) << j;
   }
 }
 

@@ -9,7 +9,7 @@
 #include "harness/core/bytes.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 /// The receiver of the shipped board with all its quirks (docs/spec/parol6.md, "Receiving"): any
 /// length byte is believed, the check byte is not looked at, nothing times out, and the store keeps
@@ -35,11 +35,11 @@ class FirmwareReceiver {
   [[nodiscard]] bool ends_well() const noexcept;
   void expect_header() noexcept;
 
-  std::array<std::byte, 255> store_{};
+  std::array<std::byte, kLongestPayload> store_{};
   std::uint8_t start_bytes_ = 0;  ///< how many of the three have come
   bool in_payload_ = false;
   std::uint8_t length_ = 0;
   std::uint8_t filled_ = 0;
 };
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

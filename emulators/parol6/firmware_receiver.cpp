@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/wire/parol6/firmware_receiver.hpp"
+#include "emulators/parol6/firmware_receiver.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 
 FirmwareReceiver::Step FirmwareReceiver::step(Bytes in) noexcept {
   std::size_t used = 0;
@@ -73,4 +73,4 @@ void FirmwareReceiver::expect_header() noexcept {
   filled_ = 0;
 }
 
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation

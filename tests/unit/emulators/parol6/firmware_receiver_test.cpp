@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/wire/parol6/firmware_receiver.hpp"
+#include "emulators/parol6/firmware_receiver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "tests/unit/support/property.hpp"
 #include "tests/unit/wire/parol6/vectors.hpp"
 
-namespace armjig::parol6 {
+namespace armjig::parol6::emulation {
 namespace {
 
 using test::as_vector;
@@ -360,4 +360,4 @@ TEST(FirmwareReceiver, AcceptsTheSameHoweverTheStreamIsCut) {
 }
 
 }  // namespace
-}  // namespace armjig::parol6
+}  // namespace armjig::parol6::emulation
