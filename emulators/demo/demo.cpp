@@ -18,7 +18,7 @@ using enum Operation;
 constexpr std::array kTable{
     Row{kReady, kQuery, kReady},     Row{kReady, kStart, kRunning},
     Row{kReady, kHalt, kHalted},     Row{kRunning, kQuery, kRunning},
-    Row{kRunning, kStart, kRunning},  // demo.start.twice: asking twice is fine
+    Row{kRunning, kStart, kRunning},  // asking twice is fine
     Row{kRunning, kHalt, kHalted},   Row{kHalted, kQuery, kHalted},
     Row{kHalted, kStart, kRunning},  Row{kHalted, kHalt, kHalted},
 };

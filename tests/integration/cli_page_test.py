@@ -19,8 +19,7 @@ def complaints(page, commands):
     begin = page.index(BEGIN) + len(BEGIN)
     end = page.index(END)
     if page[begin:end] != commands:
-        yield (f"{PAGE} is stale; renew it: tests/integration/cli_page_test.py build/.../armjig "
-               "docs/cli.md --renew")
+        yield f"{PAGE} is stale; renew it: scripts/docs"
     rest = page[:begin] + page[end:]
     known = set()
     for line in commands.splitlines():

@@ -26,7 +26,7 @@ inline constexpr Duration kOvertakenReply = milliseconds{500};
 /// Three beats.
 inline constexpr Duration kBeat = seconds{3};
 /// Between two changes of the joystick mode, or the shipped server hangs
-/// (kinovazed.death.mode-too-soon).
+/// (kinovazed.mode.guard).
 inline constexpr Duration kModeChange = milliseconds{600};
 }  // namespace patience
 
