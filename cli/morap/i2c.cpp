@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -93,7 +94,8 @@ Exit scan(const Device& device, const Options& options) {
   if (found.code != BusCode::kOk) return report(found.code, {}, *rig);
   for (const auto address : found.addresses) {
     if (options.wants_json) {
-      fmt::print("{{\"address\":{},\"guess\":\"{}\"}}\n", address.value, guess(address));
+      const nlohmann::ordered_json one{{"address", address.value}, {"guess", guess(address)}};
+      fmt::print("{}\n", one.dump());
     } else {
       fmt::print("0x{:02X}  {}\n", address.value, guess(address));
     }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <pugixml.hpp>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -12,89 +14,106 @@
 namespace armjig {
 namespace {
 
+using pugi::xml_node;
 using wording::Rows;
 
-std::string attribute(std::string_view text) { return wording::xml(wording::line(text)); }
+/// XML has no escapes for what `wording::line` replaces.
+void set(xml_node node, const char* name, std::string_view text) {
+  node.append_attribute(name).set_value(wording::line(text).c_str());
+}
 
-std::ptrdiff_t count(const Rows& rows, std::initializer_list<Verdict> verdicts) {
-  return std::ranges::count_if(rows, [&](const ReportRow* row) {
+void set_time(xml_node node, Duration time) {
+  set(node, "time", fmt::format("{:.3f}", wording::seconds(time)));
+}
+
+std::string count(const Rows& rows, std::initializer_list<Verdict> verdicts) {
+  return std::to_string(std::ranges::count_if(rows, [&](const ReportRow* row) {
     return std::ranges::find(verdicts, row->verdict) != verdicts.end();
-  });
+  }));
 }
 
 /// The attributes that a suite and the whole have in common.
-std::string counts_of(const Rows& rows) {
+void set_counts(xml_node node, const Rows& rows) {
   Duration time{};
   for (const auto* row : rows) time += row->duration;
-  return fmt::format(R"(tests="{}" failures="{}" errors="{}" time="{:.3f}")", rows.size(),
-                     count(rows, {Verdict::kFail, Verdict::kFlaky}), count(rows, {Verdict::kError}),
-                     wording::seconds(time));
+  set(node, "tests", std::to_string(rows.size()));
+  set(node, "failures", count(rows, {Verdict::kFail, Verdict::kFlaky}));
+  set(node, "errors", count(rows, {Verdict::kError}));
+  set_time(node, time);
+}
+
+void set_text(xml_node node, std::string_view summary, const ReportRow& row) {
+  const auto text = fmt::format("{}\n{}", summary, wording::details_text(row, ""));
+  node.text().set(text.c_str());
+}
+
+void add_problem(xml_node one, const char* name, const ReportRow& row) {
+  auto node = one.append_child(name);
+  const auto message = wording::expected_and_actual(row);
+  set(node, "type", to_string(row.verdict));
+  set(node, "message", message.empty() ? row.summary : message);
+  set_text(node, wording::line(row.summary), row);
 }
 
 /// What stands inside a test case: nothing says that it passed.
-std::string outcome_of(const ReportRow& row) {
-  const auto element = [&row](const char* name) {
-    auto message = wording::expected_and_actual(row);
-    if (message.empty()) message = wording::line(row.summary);
-    return fmt::format("      <{0} type=\"{1}\" message=\"{2}\">{3}\n{4}</{0}>\n", name,
-                       to_string(row.verdict), attribute(message), attribute(row.summary),
-                       wording::xml(wording::details_text(row, "")));
-  };
+void add_outcome(xml_node one, const ReportRow& row) {
   switch (row.verdict) {
     case Verdict::kFail:
     case Verdict::kFlaky:
-      return element("failure");
+      return add_problem(one, "failure", row);
     case Verdict::kError:
-      return element("error");
+      return add_problem(one, "error", row);
     case Verdict::kSkipped:
     case Verdict::kInconclusive:
-      return fmt::format("      <skipped message=\"{}: {}\"/>\n", to_string(row.verdict),
-                         attribute(row.actual));
+      return set(one.append_child("skipped"), "message",
+                 fmt::format("{}: {}", to_string(row.verdict), row.actual));
     case Verdict::kDeviation:
-      return fmt::format("      <system-out>known deviation: {}\n{}</system-out>\n",
-                         attribute(row.summary), wording::xml(wording::details_text(row, "")));
+      return set_text(one.append_child("system-out"),
+                      "known deviation: " + wording::line(row.summary), row);
     case Verdict::kPass:
       break;
   }
-  return {};
 }
 
-std::string case_xml(const ReportRow& row, std::string_view topic) {
-  const auto outcome = outcome_of(row);
-  const auto head =
-      fmt::format(R"(    <testcase classname="{}" name="{}" time="{:.3f}")", attribute(topic),
-                  attribute(row.name), wording::seconds(row.duration));
-  return outcome.empty() ? head + "/>\n" : head + ">\n" + outcome + "    </testcase>\n";
+void add_case(xml_node suite, const ReportRow& row, std::string_view topic) {
+  auto one = suite.append_child("testcase");
+  set(one, "classname", topic);
+  set(one, "name", row.name);
+  set_time(one, row.duration);
+  add_outcome(one, row);
 }
 
-std::string suite_xml(const Report& report, const wording::Topic& topic) {
-  auto text = fmt::format(R"(  <testsuite name="{}" {} skipped="{}")", attribute(topic.name),
-                          counts_of(topic.rows),
-                          count(topic.rows, {Verdict::kSkipped, Verdict::kInconclusive}));
-  if (report.started) text += fmt::format(R"( timestamp="{}")", wording::iso_time(*report.started));
-  text += ">\n";
-  if (!report.facts.empty()) {
-    text += "    <properties>\n";
-    for (const auto& [name, value] : report.facts) {
-      text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", attribute(name),
-                          attribute(value));
-    }
-    text += "    </properties>\n";
+void add_suite(xml_node all, const Report& report, const wording::Topic& topic) {
+  auto suite = all.append_child("testsuite");
+  set(suite, "name", topic.name);
+  set_counts(suite, topic.rows);
+  set(suite, "skipped", count(topic.rows, {Verdict::kSkipped, Verdict::kInconclusive}));
+  if (report.started) set(suite, "timestamp", wording::iso_time(*report.started));
+  if (!report.facts.empty()) suite.append_child("properties");
+  for (const auto& [name, value] : report.facts) {
+    auto property = suite.child("properties").append_child("property");
+    set(property, "name", name);
+    set(property, "value", value);
   }
-  for (const auto* row : topic.rows) text += case_xml(*row, topic.name);
-  return text + "  </testsuite>\n";
+  for (const auto* row : topic.rows) add_case(suite, *row, topic.name);
 }
 
 }  // namespace
 
 std::string to_junit(const Report& report) {
-  Rows all;
-  for (const auto& row : report.rows) all.push_back(&row);
-  auto text =
-      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\" {}>\n",
-                  attribute(report.title), counts_of(all));
-  for (const auto& topic : wording::topics_of(report)) text += suite_xml(report, topic);
-  return text + "</testsuites>\n";
+  Rows rows;
+  for (const auto& row : report.rows) rows.push_back(&row);
+  pugi::xml_document document;
+  auto declaration = document.append_child(pugi::node_declaration);
+  set(declaration, "version", "1.0");
+  set(declaration, "encoding", "UTF-8");
+  auto all = document.append_child("testsuites");
+  set(all, "name", report.title);
+  set_counts(all, rows);
+  for (const auto& topic : wording::topics_of(report)) add_suite(all, report, topic);
+  std::ostringstream out;
+  document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
+  return std::move(out).str();
 }
 
 }  // namespace armjig

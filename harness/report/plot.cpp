@@ -264,7 +264,7 @@ std::string_view class_of(Shape shape) noexcept {
   return kClasses[static_cast<std::size_t>(shape)];
 }
 
-std::string label(std::string_view text) { return wording::xml(wording::line(text)); }
+std::string label(std::string_view text) { return wording::html(wording::line(text)); }
 
 std::string grid(const std::vector<Tick>& x_ticks, const std::vector<Tick>& y_ticks) {
   std::string svg = "<g class=\"grid\">\n";

@@ -4,40 +4,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "harness/report/wording.hpp"
 
 namespace armjig {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr std::size_t kMostPoses = 600;
 
-/// Times and coordinates as JSON: `{"times":[...],"chains":[[x,y,z,x,y,z,...],...]}`.
+/// `{"times":[...],"chains":[[x,y,z,x,y,z,...],...]}`: hundredths of seconds, tenths of a unit.
 std::string data_of(const Scene& scene) {
   const auto count = std::min(scene.poses.size(), kMostPoses);
-  std::string times;
-  std::string chains;
+  auto times = Json::array();
+  auto chains = Json::array();
   for (std::size_t i = 0; i < count; ++i) {
     const auto& pose =
         scene.poses[i * (scene.poses.size() - 1) / std::max<std::size_t>(count - 1, 1)];
-    const auto* const comma = i == 0 ? "" : ",";
-    fmt::format_to(std::back_inserter(times), "{}{:.2f}", comma, pose.seconds);
-    fmt::format_to(std::back_inserter(chains), "{}[", comma);
-    for (std::size_t p = 0; p < pose.chain.size(); ++p) {
-      const auto& [x, y, z] = pose.chain[p];
-      fmt::format_to(std::back_inserter(chains), "{}{:.1f},{:.1f},{:.1f}", p == 0 ? "" : ",", x, y,
-                     z);
+    times.push_back(std::nearbyint(pose.seconds * 100) / 100);
+    auto& chain = chains.emplace_back(Json::array());
+    for (const auto& [x, y, z] : pose.chain) {
+      for (const double length : {x, y, z}) chain.push_back(std::nearbyint(length * 10) / 10);
     }
-    chains += ']';
   }
-  return fmt::format("{{\"times\":[{}],\"chains\":[{}]}}", times, chains);
+  return Json{{"times", std::move(times)}, {"chains", std::move(chains)}}.dump();
 }
 
 }  // namespace
 
 std::string to_figure(const Scene& scene) {
-  const auto title = wording::xml(wording::line(scene.title));
+  const auto title = wording::html(wording::line(scene.title));
   if (scene.poses.empty()) {
     return fmt::format(
         "<figure class=\"plot card\">\n<figcaption>{}</figcaption>\n<p class=\"no-data\">no "
@@ -52,7 +52,7 @@ std::string to_figure(const Scene& scene) {
       "<p class=\"x-label\">Drag to turn. Lengths in {}.</p>\n"
       "<noscript><p class=\"no-data\">The drawing needs the page's script.</p></noscript>\n"
       "</figure>\n",
-      data_of(scene), title, title, wording::xml(wording::line(scene.unit)));
+      data_of(scene), title, title, wording::html(wording::line(scene.unit)));
 }
 
 }  // namespace armjig

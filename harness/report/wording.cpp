@@ -3,42 +3,19 @@
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
+#include <utf8.h>
 
 #include <algorithm>
 #include <array>
+#include <kainjow/mustache.hpp>
 
 namespace armjig::wording {
 namespace {
 
-/// The length of the well-formed UTF-8 character that `text` begins with, 0 if there is none
-/// (table 3-7 of the Unicode standard).
-std::size_t character_size(std::string_view text) noexcept {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const auto is_in = [&](std::size_t i, unsigned low, unsigned high) {
-    return i < text.size() && byte(i) >= low && byte(i) <= high;
-  };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return is_in(1, 0x80, 0xBF) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {
-    const unsigned low = first == 0xE0 ? 0xA0 : 0x80;
-    const unsigned high = first == 0xED ? 0x9F : 0xBF;
-    return is_in(1, low, high) && is_in(2, 0x80, 0xBF) ? 3 : 0;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    const unsigned low = first == 0xF0 ? 0x90 : 0x80;
-    const unsigned high = first == 0xF4 ? 0x8F : 0xBF;
-    return is_in(1, low, high) && is_in(2, 0x80, 0xBF) && is_in(3, 0x80, 0xBF) ? 4 : 0;
-  }
-  return 0;
-}
-
 /// Controls, C1 too, which some terminals obey, and the two characters that XML forbids.
-bool is_forbidden(std::string_view character) noexcept {
-  const auto first = static_cast<unsigned char>(character.front());
-  const bool is_c1 = character >= "\xC2\x80" && character <= "\xC2\x9F";
-  return first < 0x20 || first == 0x7F || is_c1 || character == "\xEF\xBF\xBE" ||
-         character == "\xEF\xBF\xBF";
+bool is_forbidden(char32_t character) noexcept {
+  return character < 0x20 || (character >= 0x7F && character <= 0x9F) || character == 0xFFFE ||
+         character == 0xFFFF;
 }
 
 std::string escaped(std::string_view bytes) {
@@ -66,13 +43,17 @@ enum class Breaks : std::uint8_t { kShown, kKept };
 std::string printable(std::string_view text, Breaks breaks) {
   std::string out;
   out.reserve(text.size());
-  while (!text.empty()) {
-    const auto size = character_size(text);
-    const auto character = text.substr(0, std::max<std::size_t>(size, 1));
-    const bool is_break = character == "\n" || character == "\t";
-    const bool is_kept = is_break ? breaks == Breaks::kKept : size > 0 && !is_forbidden(character);
-    out += is_kept ? std::string{character} : escaped(character);
-    text.remove_prefix(character.size());
+  const auto* place = text.begin();
+  while (place != text.end()) {
+    const auto* const bad = utf8::find_invalid(place, text.end());
+    while (place != bad) {
+      const auto* const begin = place;
+      const auto character = utf8::unchecked::next(place);
+      const bool is_break = character == '\n' || character == '\t';
+      const bool is_kept = is_break ? breaks == Breaks::kKept : !is_forbidden(character);
+      out += is_kept ? std::string{begin, place} : escaped({begin, place});
+    }
+    if (bad != text.end()) out += escaped({place++, 1});
   }
   return out;
 }
@@ -91,41 +72,16 @@ std::string line(std::string_view text) { return printable(text, Breaks::kShown)
 std::string lines(std::string_view text) { return printable(text, Breaks::kKept); }
 
 std::size_t width_of(std::string_view printable) noexcept {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      printable, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(utf8::unchecked::distance(printable.begin(), printable.end()));
 }
 
 std::string cut(std::string_view printable, std::size_t width) {
-  auto end = std::min(printable.size(), width);
-  while (end < printable.size() && width_of(printable.substr(0, end + 1)) <= width) ++end;
-  return std::string{printable.substr(0, end)};
+  const auto* end = printable.begin();
+  for (; width > 0 && end != printable.end(); --width) utf8::unchecked::next(end);
+  return {printable.begin(), end};
 }
 
-std::string xml(std::string_view text) {
-  std::string out;
-  for (const char c : lines(text)) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
+std::string html(std::string_view text) { return kainjow::mustache::html_escape(lines(text)); }
 
 std::string counted(std::size_t count, Verdict verdict) {
   constexpr std::array<std::string_view, kVerdictCount> kWords{

@@ -22,7 +22,7 @@ namespace armjig::wording {
 [[nodiscard]] std::string cut(std::string_view printable, std::size_t width);
 
 /// `lines` with `&`, `<`, `>` and quotes escaped, for element content and quoted attributes.
-[[nodiscard]] std::string xml(std::string_view text);
+[[nodiscard]] std::string html(std::string_view text);
 
 /// `3 passed`, `1 error`.
 [[nodiscard]] std::string counted(std::size_t count, Verdict verdict);

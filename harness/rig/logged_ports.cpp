@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/rig/logged_ports.hpp"
 
-#include <fmt/core.h>
-
 #include <utility>
 
 #include "harness/capture/trace.hpp"
@@ -11,15 +9,16 @@
 namespace armjig {
 namespace {
 
-/// Keys of a line, each after a comma.
-constexpr std::string_view kWithStop;
-constexpr std::string_view kWithoutStop = R"(,"stop":false)";
+using Keys = WireLog::Keys;
 
-std::string failed(ErrorCode code) { return fmt::format(R"(,"error":"{}")", describe(code)); }
+const WireLog::Key kWithoutStop{"stop", false};
 
-std::string_view refused(Transfer transfer) noexcept {
-  if (transfer == Transfer::kDone) return {};
-  return transfer == Transfer::kAddressRefused ? R"(,"refused":"address")" : R"(,"refused":"byte")";
+WireLog::Key failed(ErrorCode code) { return {"error", std::string{describe(code)}}; }
+
+Keys outcome_of(const Result<Transfer>& result) {
+  if (!result) return {failed(result.error().code)};
+  if (*result == Transfer::kDone) return {};
+  return {{"refused", *result == Transfer::kAddressRefused ? "address" : "byte"}};
 }
 
 /// What is known of the answers to a message of a transaction with so many.
@@ -37,14 +36,14 @@ LoggedStream::LoggedStream(std::unique_ptr<StreamPort> port, std::shared_ptr<Wir
 
 Result<void> LoggedStream::write(Bytes bytes) {
   const auto written = inner().write(bytes);
-  if (written) talk_.add_bytes(now(), "", Direction::kToDevice, bytes);
+  if (written) talk_.add_bytes(now(), {}, Direction::kToDevice, bytes);
   return written;
 }
 
 Result<std::size_t> LoggedStream::read(std::span<std::byte> into, Instant deadline) {
   const auto size = inner().read(into, deadline);
   if (size && *size > 0) {
-    talk_.add_bytes(now(), "", Direction::kFromDevice, into.first(*size));
+    talk_.add_bytes(now(), {}, Direction::kFromDevice, into.first(*size));
   }
   return size;
 }
@@ -109,12 +108,13 @@ void LoggedSession::write_end(std::string_view how) {
 }
 
 void LoggedSession::write_border(std::string_view direction, std::string_view how) {
-  log_->add(time(),
-            fmt::format(R"("dir":"{}","conn":{},"text":"{}")", direction, connection_, how));
+  log_->add(time(), {{"dir", std::string{direction}},
+                     {"conn", std::int64_t{connection_}},
+                     {"text", std::string{how}}});
 }
 
 void LoggedSession::write_bytes(Direction direction, Bytes bytes) {
-  talk_->add_bytes(time(), fmt::format(R"("conn":{},)", connection_), direction, bytes);
+  talk_->add_bytes(time(), {{"conn", std::int64_t{connection_}}}, direction, bytes);
 }
 
 LoggedSource::LoggedSource(std::unique_ptr<SessionSource> inner, std::shared_ptr<WireLog> log)
@@ -134,15 +134,15 @@ bool LoggedSource::touch(std::string_view input, std::int64_t value) {
 LoggedBus::LoggedBus(std::unique_ptr<BusPort> port, std::shared_ptr<WireLog> log)
     : BusAround{std::move(port)}, talk_{std::move(log)} {}
 
-LoggedBus::~LoggedBus() { end_part(kWithoutStop); }
+LoggedBus::~LoggedBus() { end_part({kWithoutStop}); }
 
 Result<Transfer> LoggedBus::transfer(std::span<const BusMessage> messages) {
   if (has_operations()) return BusPort::transfer(messages);
   const auto begin = now();
   const auto result = inner().transfer(messages);
-  const auto outcome = result ? std::string{refused(*result)} : failed(result.error().code);
   for (const auto& message : messages) {
-    const bool is_last = &message == &messages.back();
+    auto outcome = outcome_of(result);
+    if (&message != &messages.back()) outcome.push_back(kWithoutStop);
     const bool was_read = result && *result == Transfer::kDone;
     const auto bytes = message.access == Access::kWrite ? message.write
                        : was_read                       ? Bytes{message.read}
@@ -152,19 +152,19 @@ Result<Transfer> LoggedBus::transfer(std::span<const BusMessage> messages) {
           message.access,
           {bytes.begin(), bytes.end()},
           acks_of(message, result, messages.size())},
-         outcome + std::string{is_last ? kWithStop : kWithoutStop});
+         outcome);
   }
   return result;
 }
 
 Result<Ack> LoggedBus::start(BusAddress address, Access access) {
-  end_part(kWithoutStop);
+  end_part({kWithoutStop});
   part_ = Part{.begin = now(), .address = address, .access = access};
   const auto reply = inner().start(address, access);
   if (reply) {
     part_->acks += *reply == Ack::kAck ? 'A' : 'N';
   } else {
-    end_part(failed(reply.error().code));
+    end_part({failed(reply.error().code)});
   }
   return reply;
 }
@@ -172,7 +172,7 @@ Result<Ack> LoggedBus::start(BusAddress address, Access access) {
 Result<Ack> LoggedBus::write(std::byte byte) {
   const auto reply = inner().write(byte);
   if (!reply) {
-    end_part(failed(reply.error().code));
+    end_part({failed(reply.error().code)});
   } else if (part_) {
     part_->bytes.push_back(byte);
     part_->acks += *reply == Ack::kAck ? 'A' : 'N';
@@ -183,7 +183,7 @@ Result<Ack> LoggedBus::write(std::byte byte) {
 Result<std::byte> LoggedBus::read(Ack reply) {
   const auto byte = inner().read(reply);
   if (!byte) {
-    end_part(failed(byte.error().code));
+    end_part({failed(byte.error().code)});
   } else if (part_) {
     part_->bytes.push_back(*byte);
   }
@@ -192,40 +192,44 @@ Result<std::byte> LoggedBus::read(Ack reply) {
 
 Result<void> LoggedBus::stop() {
   const auto stopped = inner().stop();
-  end_part(stopped ? std::string{kWithStop} : failed(stopped.error().code));
+  end_part(stopped ? Keys{} : Keys{failed(stopped.error().code)});
   return stopped;
 }
 
 Result<void> LoggedBus::recover() {
-  end_part(kWithoutStop);
+  end_part({kWithoutStop});
   const auto begin = now();
   const auto recovered = inner().recover();
-  talk_.log().add(
-      begin, R"("op":"recover")" + (recovered ? std::string{} : failed(recovered.error().code)));
+  Keys keys{{"op", "recover"}};
+  if (!recovered) keys.push_back(failed(recovered.error().code));
+  talk_.log().add(begin, keys);
   return recovered;
 }
 
 bool LoggedBus::touch(std::string_view input, std::int64_t value) {
   if (!inner().touch(input, value)) return false;
-  end_part(kWithoutStop);
+  end_part({kWithoutStop});
   talk_.log().add_input(now(), "op", input, value);
   return true;
 }
 
-void LoggedBus::end_part(std::string_view keys) {
+void LoggedBus::end_part(const Keys& keys) {
   if (part_) note(*std::exchange(part_, std::nullopt), keys);
 }
 
-void LoggedBus::note(const Part& part, std::string_view keys) {
+void LoggedBus::note(const Part& part, const Keys& more) {
   const bool is_read = part.access == Access::kRead;
   TraceEvent event;
   event.dir = is_read ? "read" : "write";
   event.bytes = part.bytes;
   event.id = part.address.value;
   event.text = part.acks;
-  const auto line = fmt::format(R"("op":"{}","addr":{},"hex":"{}","ack":"{}"{})", event.dir,
-                                event.id, to_hex(part.bytes), part.acks, keys);
-  talk_.add(part.begin, line, is_read ? Direction::kFromDevice : Direction::kToDevice,
+  Keys keys{{"op", event.dir},
+            {"addr", std::int64_t{event.id}},
+            {"hex", to_hex(part.bytes)},
+            {"ack", part.acks}};
+  keys.insert(keys.end(), more.begin(), more.end());
+  talk_.add(part.begin, keys, is_read ? Direction::kFromDevice : Direction::kToDevice,
             bus_message_of(event));
 }
 

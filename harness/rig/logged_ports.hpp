@@ -82,8 +82,8 @@ class LoggedBus final : public BusAround {
     std::string acks{};  ///< `A` or `N` for each byte that was answered
   };
 
-  void note(const Part& part, std::string_view keys);
-  void end_part(std::string_view keys);
+  void note(const Part& part, const WireLog::Keys& more);
+  void end_part(const WireLog::Keys& keys);
 
   WireLog::Talk talk_;
   std::optional<Part> part_;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "harness/core/error.hpp"
@@ -25,14 +26,21 @@ class WireLog {
  public:
   using MakeDissector = std::unique_ptr<Dissector> (*)();
 
+  /// A key of a line and its value.
+  struct Key {
+    std::string_view name;
+    std::variant<bool, std::int64_t, std::string> value;
+  };
+  using Keys = std::vector<Key>;
+
   /// What was said on one byte stream, connection or bus.
   class Talk {
    public:
     explicit Talk(std::shared_ptr<WireLog> log);
-    /// A line with `keys`, JSON without the braces, after the time. `bytes` are what they tell.
-    void add(Instant time, std::string_view keys, Direction direction, Bytes bytes);
-    /// A line `to_device` or `from_device`; `keys` as above, each with a comma after it.
-    void add_bytes(Instant time, std::string_view keys, Direction direction, Bytes bytes);
+    /// A line with `keys` after the time. `bytes` are what they tell.
+    void add(Instant time, const Keys& keys, Direction direction, Bytes bytes);
+    /// A line `to_device` or `from_device`, with `keys` between direction and bytes.
+    void add_bytes(Instant time, const Keys& keys, Direction direction, Bytes bytes);
     [[nodiscard]] WireLog& log() noexcept { return *log_; }
 
    private:
@@ -45,9 +53,9 @@ class WireLog {
                                                                 std::string_view device,
                                                                 MakeDissector make_dissector);
 
-  /// A line; `keys` as above. A time before the last one, as clocks that were read one after the
-  /// other may have it, is taken for that.
-  void add(Instant time, std::string_view keys, std::span<const Message> messages = {});
+  /// A line with `keys` after the time. A time before the last one, as clocks that were read one
+  /// after the other may have it, is taken for that.
+  void add(Instant time, const Keys& keys, std::span<const Message> messages = {});
 
   /// What somebody did at the device; `kind` is `dir` or `op`.
   void add_input(Instant time, std::string_view kind, std::string_view name, std::int64_t value);

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/hex.hpp"
@@ -59,9 +58,9 @@ std::string to_trace(const Schedule& schedule, std::string_view title) {
   };
   auto text = json_line(header);
   for (std::size_t i = 0; i < schedule.frames.size(); ++i) {
-    fmt::format_to(std::back_inserter(text),
-                   "{{\"t_us\":{},\"dir\":\"to_device\",\"hex\":\"{}\"}}\n", i * kTickMicroseconds,
-                   to_hex(parol6::encode(schedule.frames[i])));
+    text += json_line(nlohmann::ordered_json{{"t_us", i * kTickMicroseconds},
+                                             {"dir", "to_device"},
+                                             {"hex", to_hex(parol6::encode(schedule.frames[i]))}});
   }
   return text;
 }

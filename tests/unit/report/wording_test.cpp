@@ -45,8 +45,8 @@ TEST(Wording, IsGoodUtf8WithoutControlsWhateverComes) {
 }
 
 TEST(Wording, EscapesMarkup) {
-  EXPECT_EQ(xml("<a b=\"c\" d='e'>&]]>\x01"),
-            "&lt;a b=&quot;c&quot; d=&#39;e&#39;&gt;&amp;]]&gt;\\x01");
+  EXPECT_EQ(html("<a b=\"c\" d='e'>&]]>\x01"),
+            "&lt;a b=&quot;c&quot; d=&apos;e&apos;&gt;&amp;]]&gt;\\x01");
 }
 
 TEST(Wording, GroupsRowsByDeviceAndTopic) {
