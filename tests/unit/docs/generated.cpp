@@ -266,13 +266,30 @@ std::string counts() {
 
 /// What stands behind the first blank.
 std::string_view rest_of(std::string_view text) {
-  return text.substr(std::min(text.find(' ') + 1, text.size()));
+  return text.substr(std::min(text.find(' '), text.size() - 1) + 1);
+}
+
+std::string uses(std::string_view folder) {
+  const auto prefix = std::string{folder} + '/';
+  auto text = heading({"room", "may use"});
+  for (const auto& room : rooms()) {
+    if (!room.folder.starts_with(folder)) continue;
+    std::vector<std::string_view> names;
+    for (auto rest = room.uses; !rest.empty(); rest = rest_of(rest)) {
+      auto name = rest.substr(0, rest.find(' '));
+      if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
+      names.push_back(name);
+    }
+    text += row({fmt::format("`{}`", room.folder), fmt::format("{}", fmt::join(names, ", "))});
+  }
+  return text;
 }
 
 /// Nothing if there is no such part.
 std::string part(std::string_view what) {
   if (what == "counts") return counts();
   const auto rest = rest_of(what);
+  if (what.starts_with("uses ")) return uses(rest);
   const auto name = rest.substr(0, rest.find_first_of(" ,"));
   const auto* const device = find(name);
   if (device == nullptr) return {};
@@ -293,7 +310,8 @@ constexpr std::string_view kEnd = "\n<!-- end -->";
 }  // namespace
 
 std::vector<std::string> pages() {
-  std::vector<std::string> found{"README.md"};
+  std::vector<std::string> found{"README.md", "harness/README.md", "emulators/README.md",
+                                 "conformance/README.md"};
   for (const auto& file : fs::recursive_directory_iterator{fs::path{source_dir()} / "docs"}) {
     if (file.path().extension() != ".md") continue;
     found.push_back(fs::relative(file.path(), source_dir()).string());

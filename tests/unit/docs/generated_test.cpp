@@ -48,6 +48,12 @@ TEST(GeneratedParts, ArePartsOfTheDocumentOfEachDevice) {
   }
 }
 
+TEST(Rooms, HaveAReadme) {
+  for (const auto& room : rooms()) {
+    EXPECT_NE(read_page(std::string{room.folder} + "/README.md"), "") << room.folder;
+  }
+}
+
 TEST(GeneratedParts, KeepWhatIsWrittenAroundThem) {
   EXPECT_THAT(
       renewed("a\n<!-- generated: requirements demo, The machine -->\nstale\n<!-- end -->\nb\n"),

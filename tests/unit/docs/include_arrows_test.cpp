@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/unit/docs/generated.hpp"
 #include "tests/unit/support/source_dir.hpp"
 
 namespace armjig {
@@ -18,10 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Room {
-  std::string_view folder;
-  std::string_view uses;  ///< rooms, or folders of rooms, with blanks between; itself goes unsaid
-};
+using docs::Room;
 
 // From the bottom up, but a folder or file stands before the folder that it is in. A new arrow is a
 // new word here, and belongs in the picture too.
@@ -182,4 +180,6 @@ TEST(Namespaces, OfADeviceHaveOneForEachRoom) {
 }
 
 }  // namespace
+std::span<const Room> docs::rooms() noexcept { return kRooms; }
+
 }  // namespace armjig
