@@ -14,6 +14,9 @@
 #include <sstream>
 #include <utility>
 
+#include "emulators/kinovazed/defects/defective_server.hpp"
+#include "emulators/parol6/arm.hpp"
+#include "harness/link/impairment.hpp"
 #include "harness/wire/demo/demo.hpp"
 #include "harness/wire/kinovazed/fields.hpp"
 #include "harness/wire/morap/fields.hpp"
@@ -225,6 +228,14 @@ std::string kinovazed_commands() {
   return text;
 }
 
+std::string inputs(std::span<const DeviceInput> all) {
+  auto text = heading({"name", "number"});
+  for (const auto& [name, values] : all) {
+    text += row({fmt::format("`{}`", name), std::string{values}});
+  }
+  return text;
+}
+
 std::ptrdiff_t recordings(std::string_view device) {
   const fs::recursive_directory_iterator files{fs::path{source_dir()} / "captures" / device};
   return std::ranges::count_if(
@@ -288,6 +299,7 @@ std::string uses(std::string_view folder) {
 /// Nothing if there is no such part.
 std::string part(std::string_view what) {
   if (what == "counts") return counts();
+  if (what == "impairments") return "```\n" + impairment_forms() + "```\n";
   const auto rest = rest_of(what);
   if (what.starts_with("uses ")) return uses(rest);
   const auto name = rest.substr(0, rest.find_first_of(" ,"));
@@ -297,6 +309,8 @@ std::string part(std::string_view what) {
   if (what.starts_with("fields ")) return fields(name, rest_of(rest));
   if (what.starts_with("options ")) return to_markdown(device->options());
   if (what == "flags parol6" || what == "flags kinovazed") return flags(name);
+  if (what == "inputs parol6") return inputs(parol6::emulation::arm_inputs());
+  if (what == "inputs kinovazed") return inputs(kinovazed::emulation::server_inputs());
   if (what == "commands morap") return morap_commands();
   if (what == "commands kinovazed") return kinovazed_commands();
   if (what == "readings morap") return morap_readings();

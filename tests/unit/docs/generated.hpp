@@ -15,6 +15,8 @@
 ///     flags DEVICE                    what the bits of its bytes of flags are
 ///     commands DEVICE, readings DEVICE
 ///     options DEVICE                  of the emulated one
+///     inputs DEVICE                   what a hand beside the emulated one can do
+///     impairments                     what `--impair` takes
 ///     uses FOLDER                     what the rooms in it may use
 ///     counts                          what there is of each device, for README.md
 namespace armjig::docs {
