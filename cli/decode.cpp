@@ -14,6 +14,7 @@
 #include "cli/device.hpp"
 #include "conformance/wording.hpp"
 #include "harness/capture/message_json.hpp"
+#include "harness/capture/pcapng.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/files/user_file.hpp"
@@ -68,8 +69,8 @@ Outcome<std::vector<std::byte>> parse_hex(const std::string& where, const std::s
                  "write two digits for each byte");
 }
 
-Outcome<std::vector<Chunk>> chunks_of_trace(UserFile& file, const std::string& path) {
-  const auto trace = read_trace(file, path);
+Outcome<std::vector<Chunk>> chunks_of_trace(UserFile file, const std::string& path) {
+  const auto trace = read_trace(std::move(file), path);
   if (!trace) return tl::unexpected{trace.error()};
   std::vector<Chunk> chunks;
   int unanswered = 0;
@@ -125,8 +126,9 @@ Outcome<std::vector<Chunk>> read_chunks(const Options& options, MakeDissector ma
   }
   auto file = options.file == "-" ? UserFile::standard_input() : UserFile::open(options.file);
   if (!file) return tl::unexpected{file.error()};
-  const bool is_trace = options.format == "auto" && file->peek() == '{';
-  if (is_trace || options.format == "trace") return chunks_of_trace(*file, options.file);
+  const bool is_trace =
+      options.format == "auto" && (file->peek() == '{' || file->starts_with(pcapng::kMagic));
+  if (is_trace || options.format == "trace") return chunks_of_trace(*std::move(file), options.file);
   const auto content = file->rest(kMostBytes);
   if (!content) return tl::unexpected{content.error()};
   const auto format = options.format == "auto" ? guess_format(*content) : options.format;

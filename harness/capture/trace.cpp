@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "harness/capture/capture.hpp"
+#include "harness/capture/pcapng.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/core/nesting.hpp"
 #include "harness/files/user_file.hpp"
@@ -124,39 +126,25 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
 /// Grows by one line after the other.
 class TraceBuilder {
  public:
-  explicit TraceBuilder(std::string path) { trace_.path = std::move(path); }
+  explicit TraceBuilder(const std::string& path) : lines_{path} { trace_.path = path; }
 
   Outcome<void> take(std::string_view line) {
-    ++number_;
-    if (number_ == 1) return take_header(line);
-    if (line.empty()) return {};
-    auto event = parse_event(trace_.path, number_, line);
-    if (!event) return tl::unexpected{std::move(event).error()};
-    if (!trace_.events.empty() && event->time < trace_.events.back().time) {
-      return malformed(trace_.path, number_, "the time runs backwards");
-    }
-    trace_.events.push_back(*std::move(event));
+    TraceEvent event;
+    const auto taken = lines_.take(line, event);
+    if (!taken) return tl::unexpected{taken.error()};
+    if (*taken) trace_.events.push_back(std::move(event));
     return {};
   }
 
-  [[nodiscard]] Trace trace() && { return std::move(trace_); }
+  [[nodiscard]] Trace trace() && {
+    trace_.device = lines_.header().device;
+    trace_.header = lines_.header().json;
+    return std::move(trace_);
+  }
 
  private:
-  Outcome<void> take_header(std::string_view line) {
-    trace_.header = line;
-    if (is_too_deep(line)) return malformed(trace_.path, 1, std::string{kTooDeep});
-    const auto header = parse_object(line);
-    if (header.is_null() || header.value("format", Json{}) != "golden-trace/1") {
-      return malformed(trace_.path, 1, R"(the first line is not a "golden-trace/1" header)");
-    }
-    LineReader reader{header};
-    trace_.device = reader.text("device");
-    if (trace_.device.empty()) return malformed(trace_.path, 1, "\"device\" is missing");
-    return {};
-  }
-
+  TraceLines lines_;
   Trace trace_;
-  std::size_t number_ = 0;
 };
 
 /// Cuts lines off the front of a text; a carriage return before the line end goes with it.
@@ -166,6 +154,28 @@ std::string_view next_line(std::string_view& rest) {
   rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
+}
+
+/// A recording that is no text, as if it were.
+Outcome<Trace> trace_of_capture(UserFile file, const std::string& path) {
+  auto reader = CaptureReader::open(std::move(file), path);
+  if (!reader) return tl::unexpected{std::move(reader.error())};
+  TraceBuilder builder{path};
+  const auto writer = make_capture_writer(CaptureFormat::kLines);
+  std::string line;
+  CaptureRecord record;
+  auto written = writer->begin((*reader)->header(), line);
+  while (written) {
+    std::string_view rest = line;
+    written = builder.take(next_line(rest));
+    if (!written) break;
+    const auto has_record = (*reader)->next(record);
+    if (!has_record) return tl::unexpected{has_record.error()};
+    if (!*has_record) return std::move(builder).trace();
+    line.clear();
+    written = writer->add(record, {}, line);
+  }
+  return tl::unexpected{std::move(written.error())};
 }
 
 bool is_same(const TraceEvent& a, const TraceEvent& b) {
@@ -194,8 +204,25 @@ std::optional<Message> sole_message(MakeDissector make_dissector, const TraceEve
 
 }  // namespace
 
+Outcome<bool> TraceLines::take(std::string_view line, TraceEvent& event) {
+  ++number_;
+  if (number_ == 1) {
+    auto header = CaptureHeader::parse(line, fmt::format("{}:1", path_));
+    if (!header) return tl::unexpected{std::move(header.error())};
+    header_ = *std::move(header);
+    return false;
+  }
+  if (line.empty()) return false;
+  auto parsed = parse_event(path_, number_, line);
+  if (!parsed) return tl::unexpected{std::move(parsed).error()};
+  event = *std::move(parsed);
+  if (event.time < last_) return malformed(path_, number_, "the time runs backwards");
+  last_ = event.time;
+  return true;
+}
+
 Outcome<Trace> parse_trace(std::string path, std::string_view text) {
-  TraceBuilder builder{std::move(path)};
+  TraceBuilder builder{path};
   do {
     if (auto taken = builder.take(next_line(text)); !taken) {
       return tl::unexpected{std::move(taken.error())};
@@ -209,11 +236,13 @@ Outcome<Trace> read_trace(const std::string& path) {
   if (!std::filesystem::exists(path, error) && !error) {
     return problem(ErrorCode::kNotFound, path, "check the path");
   }
-  return UserFile::open(path).and_then([&path](UserFile file) { return read_trace(file, path); });
+  return UserFile::open(path).and_then(
+      [&path](UserFile file) { return read_trace(std::move(file), path); });
 }
 
-Outcome<Trace> read_trace(UserFile& file, std::string path) {
-  TraceBuilder builder{std::move(path)};
+Outcome<Trace> read_trace(UserFile file, const std::string& path) {
+  if (file.starts_with(pcapng::kMagic)) return trace_of_capture(std::move(file), path);
+  TraceBuilder builder{path};
   while (true) {
     const auto line = file.next_line();
     if (!line) return tl::unexpected{line.error()};
@@ -258,6 +287,22 @@ std::vector<std::byte> bus_message_of(const TraceEvent& event) {
     if (is_taken) message.push_back(event.bytes[i]);
   }
   return message;
+}
+
+std::vector<std::byte> bus_message_of(const CaptureRecord& record) {
+  constexpr std::string_view kAck = R"("ack":")";
+  TraceEvent event;
+  event.dir = record.direction == Direction::kToDevice ? "write" : "read";
+  event.bytes.assign(record.bytes.begin(), record.bytes.end());
+  event.id = record.id;
+  const auto begin = record.details.find(kAck);
+  if (begin == std::string_view::npos) {
+    event.text.assign(1 + event.bytes.size(), 'A');
+  } else {
+    const auto letters = record.details.substr(begin + kAck.size());
+    event.text = letters.substr(0, letters.find('"'));
+  }
+  return bus_message_of(event);
 }
 
 std::optional<TraceDifference> first_difference(const std::vector<TraceEvent>& expected,

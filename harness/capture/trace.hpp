@@ -6,8 +6,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "harness/capture/capture.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/dissector.hpp"
@@ -38,11 +40,29 @@ struct Trace {
   std::vector<TraceEvent> events;
 };
 
-/// Reads a recording. Problems name `path:line`.
+/// Reads the lines of a recording one by one. Problems name `path:line`.
+class TraceLines {
+ public:
+  /// `path` is for messages.
+  explicit TraceLines(std::string path) : path_{std::move(path)} {}
+
+  /// The next line, without its end; the first one is the header. Answers whether it is an event.
+  [[nodiscard]] Outcome<bool> take(std::string_view line, TraceEvent& event);
+
+  [[nodiscard]] const CaptureHeader& header() const noexcept { return header_; }
+
+ private:
+  std::string path_;
+  CaptureHeader header_;
+  std::size_t number_ = 0;
+  Instant last_{};
+};
+
+/// Reads a recording, a text or a pcapng file. Problems name `path:line`.
 [[nodiscard]] Outcome<Trace> read_trace(const std::string& path);
 
 /// The same from a file that is open; `path` is for messages.
-[[nodiscard]] Outcome<Trace> read_trace(UserFile& file, std::string path);
+[[nodiscard]] Outcome<Trace> read_trace(UserFile file, const std::string& path);
 
 /// The same from text in memory; `path` is for messages.
 [[nodiscard]] Outcome<Trace> parse_trace(std::string path, std::string_view text);
@@ -54,6 +74,9 @@ struct Trace {
 /// What was acknowledged of a `write` or `read` on a bus: the byte with address and direction, then
 /// the data bytes. Empty if the address was not, and for any other event.
 [[nodiscard]] std::vector<std::byte> bus_message_of(const TraceEvent& event);
+
+/// The same of a record on a bus. Where nobody says what was acknowledged, all was.
+[[nodiscard]] std::vector<std::byte> bus_message_of(const CaptureRecord& record);
 
 /// Where what an emulator did first departs from what was recorded.
 struct TraceDifference {

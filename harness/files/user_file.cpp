@@ -128,6 +128,24 @@ Outcome<std::optional<std::string_view>> UserFile::next_line() {
   return std::optional<std::string_view>{line_};
 }
 
+Outcome<std::size_t> UserFile::read(std::span<std::byte> into) {
+  const auto size = std::fread(into.data(), 1, into.size(), file_.get());
+  return check().map([size] { return size; });
+}
+
+bool UserFile::starts_with(std::string_view bytes) {
+  std::string there;
+  int letter = 0;
+  while (there.size() < bytes.size() && (letter = std::getc(file_.get())) != EOF) {
+    there += static_cast<char>(letter);
+  }
+  // The C library of Linux takes back as many as it gave.
+  for (auto it = there.rbegin(); it != there.rend(); ++it) {
+    std::ungetc(static_cast<unsigned char>(*it), file_.get());
+  }
+  return there == bytes;
+}
+
 std::optional<char> UserFile::peek() {
   const int letter = std::getc(file_.get());
   if (letter == EOF) return std::nullopt;

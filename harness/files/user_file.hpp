@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -36,8 +37,13 @@ class UserFile {
   /// Of the line that was read last, from 1.
   [[nodiscard]] std::size_t line_number() const noexcept { return line_number_; }
 
+  /// As many of the next bytes as there are in the file; none at its end. For what is no text.
+  [[nodiscard]] Outcome<std::size_t> read(std::span<std::byte> into);
+
   /// The next byte, which is still there afterwards; none at the end.
   [[nodiscard]] std::optional<char> peek();
+  /// Whether the next bytes are these, which are still there afterwards.
+  [[nodiscard]] bool starts_with(std::string_view bytes);
 
  private:
   struct Close {

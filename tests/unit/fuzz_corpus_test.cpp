@@ -14,6 +14,9 @@
 
 // Each target under a name of its own.
 // NOLINTBEGIN(bugprone-suspicious-include)
+#define LLVMFuzzerTestOneInput fuzz_capture_reader
+#include "fuzz/capture_reader.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_server
 #include "fuzz/kinovazed_server.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -72,6 +75,8 @@ TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {
 }
 
 TEST(FuzzCorpus, AnyTextIsAProgramOrRefused) { run_corpus(fuzz_rbtscript, "rbtscript"); }
+
+TEST(FuzzCorpus, AnyFileIsACaptureOrRefused) { run_corpus(fuzz_capture_reader, "capture_reader"); }
 
 TEST(FuzzCorpus, AnyTextIsATraceOrRefused) { run_corpus(fuzz_trace_reader, "trace_reader"); }
 
