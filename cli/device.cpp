@@ -58,6 +58,14 @@ Outcome<const Device*> find_device(Devices devices, std::string_view name) {
                  did_you_mean(name, devices, &Device::name) + "there are: " + names_of(devices));
 }
 
+const Device* find_recorded_device(Devices devices, std::string_view name) {
+  auto found = std::ranges::find(devices, name, &Device::name);
+  if (found == devices.end()) {
+    found = std::ranges::find(devices, name.substr(0, name.find('-')), &Device::name);
+  }
+  return found == devices.end() ? nullptr : &*found;
+}
+
 std::vector<KnownBoard> known_boards(Devices devices) {
   std::vector<KnownBoard> boards;
   for (const auto& device : devices) {

@@ -101,6 +101,10 @@ template <class Kind>
 /// Problems: `kUnknownDevice`, with the names that there are.
 [[nodiscard]] Outcome<const Device*> find_device(Devices devices, std::string_view name);
 
+/// The device of that name in a recording or, as of `morap-node` and `morap-bus`, of that family;
+/// nullptr if there is none.
+[[nodiscard]] const Device* find_recorded_device(Devices devices, std::string_view name);
+
 /// Those of them that can be told by the USB numbers of their port.
 [[nodiscard]] std::vector<KnownBoard> known_boards(Devices devices);
 

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/device.hpp"
+#include "cli/trace_files.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/nesting.hpp"
@@ -36,14 +37,6 @@ struct Tally {
   int different = 0;
   int unreadable = 0;
 };
-
-/// The device of that name or, for recordings such as those of `morap-node` and `morap-bus`, of
-/// that family; the end of `devices` if there is none.
-auto device_recorded(std::string_view name, Devices devices) {
-  const auto found = std::ranges::find(devices, name, &Device::name);
-  if (found != devices.end()) return found;
-  return std::ranges::find(devices, name.substr(0, name.find('-')), &Device::name);
-}
 
 /// The device of a table; nullptr if none here has tables.
 const Device* device_of_table(const std::string& text, Devices devices) {
@@ -89,8 +82,8 @@ void verify_file(const std::string& path, Devices devices, Tally& tally) {
     ++tally.unreadable;
     return;
   }
-  const auto device = device_recorded(trace->device, devices);
-  if (device == devices.end()) {
+  const auto* const device = find_recorded_device(devices, trace->device);
+  if (device == nullptr) {
     fmt::print(stderr, "armjig: {}: no emulator replays '{}' here\n", wording::line(path),
                wording::line(trace->device));
     return;
@@ -127,7 +120,7 @@ Exit verify_all(const std::vector<std::string>& paths, Devices devices) {
 }  // namespace
 
 void add_trace(CLI::App& app, Devices devices, Action& action) {
-  auto* trace = app.add_subcommand("trace", "Recordings of real devices");
+  auto* trace = app.add_subcommand("trace", "Recordings: verify, look at, convert, cut, merge");
   trace->require_subcommand(1);
   auto* verify = trace->add_subcommand("verify", kHelp);
   const auto paths = std::make_shared<std::vector<std::string>>();
@@ -135,6 +128,7 @@ void add_trace(CLI::App& app, Devices devices, Action& action) {
   verify->callback([paths, devices, &action] {
     action = [paths, devices] { return verify_all(*paths, devices); };
   });
+  add_trace_files(*trace, devices, action);
 }
 
 }  // namespace armjig::cli

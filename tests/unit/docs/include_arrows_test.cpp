@@ -39,6 +39,7 @@ constexpr Room kRooms[] = {
      "harness/core harness/wire harness/arm harness/config harness/link harness/timing "
      "harness/motion"},
     {"harness/rig", "harness/core harness/wire harness/capture harness/link harness/report"},
+    {"harness/summary", "harness/core harness/wire harness/capture harness/timing"},
     {"harness/script",
      "harness/core harness/wire harness/arm harness/motion harness/report harness/drive "
      "harness/rig"},

@@ -1,0 +1,158 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Captures and the tools that people have: captures_test.py ARMJIG SOURCE_DIR
+
+What armjig writes, capinfos and tshark read without a warning, and what editcap and mergecap made of
+it, armjig reads. Ends with 77, which CTest takes for skipped, where Wireshark's tools are not.
+"""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ARMJIG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+TOOLS = ("capinfos", "tshark", "editcap", "mergecap")
+RECORDINGS = ("demo/start-and-halt", "parol6/gripper_can_burst_a", "parol6/estop_and_inputs_a",
+              "morap/bus-three-nodes", "morap/static-repeated-start", "morap/pen-buttons",
+              "kinovazed/connection-three", "kinovazed/session-startup",
+              "kinovazed/framing-long-junk-5000")
+# Said to root, whatever the file.
+AS_ROOT = "Running as user"
+
+
+def run(*words):
+    done = subprocess.run(words, capture_output=True, check=False)
+    errors = [line for line in done.stderr.decode().splitlines() if not line.startswith(AS_ROOT)]
+    return done.returncode, done.stdout.decode(errors="replace"), errors
+
+
+def lines_of(path):
+    return [json.loads(line) for line in path.read_text().splitlines() if line]
+
+
+class Captures(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def ok(self, *words):
+        code, output, errors = run(*map(str, words))
+        self.assertEqual((code, errors), (0, []), words)
+        return output
+
+    def packets_of(self, name):
+        path = self.folder / f"{pathlib.Path(name).name}.pcapng"
+        self.ok(ARMJIG, "trace", "convert", SOURCE / "captures" / f"{name}.jsonl", path)
+        return path
+
+    def back(self, path):
+        text = path.with_suffix(".back.jsonl")
+        self.ok(ARMJIG, "trace", "convert", path, text)
+        return lines_of(text)
+
+    def test_wireshark_reads_each_recording_without_a_warning(self):
+        for name in RECORDINGS:
+            with self.subTest(name):
+                path = self.packets_of(name)
+                self.assertIn("nanoseconds", self.ok("capinfos", path))
+                shown = self.ok("tshark", "-r", path, "-T", "fields", "-e", "frame.number",
+                                "-e", "_ws.malformed", "-e", "frame.interface_name")
+                self.assertTrue(shown)
+                for line in shown.splitlines():
+                    number, malformed, interface = line.split("\t")
+                    self.assertEqual(malformed, "", number)
+                    self.assertTrue(interface)
+
+    def test_wireshark_shows_what_was_recorded(self):
+        path = self.packets_of("demo/start-and-halt")
+        shown = self.ok("tshark", "-r", path, "-T", "fields", "-e", "frame.time_epoch",
+                        "-e", "frame.packet_flags_direction", "-e", "exported_pdu.prot_name",
+                        "-e", "exported_pdu.exported_pdu")
+        time, direction, dissector, _ = shown.splitlines()[0].split("\t")
+        self.assertEqual((float(time), int(direction, 0), dissector), (0.01, 2, "demo"))
+        bus = self.packets_of("morap/bus-three-nodes")
+        first = next(line for line in lines_of(SOURCE / "captures/morap/bus-three-nodes.jsonl")
+                     if line.get("op") == "write")
+        shown = self.ok("tshark", "-r", bus, "-Y", "i2c", "-T", "fields", "-e", "i2c.addr")
+        self.assertEqual(int(shown.splitlines()[0], 0) & 0x7F, first["addr"])
+
+    def test_editcap_and_mergecap_lose_nothing(self):
+        demo, arm = self.packets_of("demo/start-and-halt"), self.packets_of(RECORDINGS[1])
+        edited = self.folder / "edited.pcapng"
+        self.ok("editcap", demo, edited)
+        self.assertEqual(self.back(edited), self.back(demo))
+        merged = self.folder / "merged.pcapng"  # of three link types
+        self.ok("mergecap", "-w", merged, demo, arm)
+        lines = self.back(merged)
+        # Its header is mergecap's, and its first packet came at 5 ms.
+        for path in (demo, arm):
+            for line in self.back(path)[1:]:
+                found = [other for other in lines[1:]
+                         if all(other.get(key) == line.get(key)
+                                for key in ("dir", "hex", "name", "value", "id"))]
+                self.assertTrue(found, line)
+        self.assertEqual(len(lines) - 1, len(self.back(demo)) + len(self.back(arm)) - 2)
+
+    def test_commands_take_both_formats(self):
+        path = self.packets_of("kinovazed/connection-three")
+        self.ok(ARMJIG, "trace", "verify", path)
+        self.ok(ARMJIG, "decode", "kinovazed", "--file", path)
+        shown = self.ok(ARMJIG, "trace", "show", path)
+        self.assertIn("3 conversations", shown)
+        self.assertIn("round trips", shown)
+        summary = json.loads(self.ok(ARMJIG, "trace", "show", path, "--json"))
+        self.assertEqual(summary["schema"], "armjig.session/1")
+        one = self.folder / "one.pcapng"
+        self.ok(ARMJIG, "trace", "cut", path, one, "--connection", "1")
+        connections = {line["conn"] for line in self.back(one)[1:] if line["dir"].endswith("device")}
+        self.assertEqual(connections, {1})
+        both = self.folder / "both.pcapng"
+        self.ok(ARMJIG, "trace", "merge", "--out", both, path, self.packets_of(RECORDINGS[0]), path)
+        self.ok("capinfos", both)
+        self.assertEqual({line.get("link", "kinovazed") for line in self.back(both)[1:]},
+                         {"kinovazed", "demo", "kinovazed#3"})
+
+    def test_a_part_in_time_and_metadata_that_is_taken_away(self):
+        text = self.folder / "in.jsonl"
+        text.write_text('{"format":"golden-trace/1","device":"demo","target":"tcp:lab:1"}\n'
+                        '{"t_us":1000000,"dir":"to_device","hex":"a5718e"}\n'
+                        '{"t_us":3000000,"dir":"to_device","hex":"a5718e"}\n')
+        out = self.folder / "out.pcapng"
+        self.ok(ARMJIG, "trace", "cut", text, out, "--to", "2", "--redact")
+        self.assertEqual(self.back(out), [{"format": "golden-trace/1", "device": "demo"},
+                                          {"t_us": 1000000, "dir": "to_device", "hex": "a5718e"}])
+
+    def test_a_cut_file_is_read_with_a_warning_and_a_damaged_one_with_a_problem(self):
+        path = self.packets_of("demo/start-and-halt")
+        whole = path.read_bytes()
+        path.write_bytes(whole[:-1])
+        code, output, errors = run(ARMJIG, "trace", "info", str(path))
+        self.assertEqual(code, 0)
+        self.assertIn("17 records", output)
+        self.assertEqual(len(errors), 1)
+        self.assertIn("ends within a block", errors[0])
+        path.write_bytes(whole[:-4] + b"\xff\xff\xff\xff")
+        code, output, errors = run(ARMJIG, "trace", "convert", str(path),
+                                   str(self.folder / "out.jsonl"))
+        self.assertEqual(code, 2)
+        self.assertEqual(len(errors), 1)
+        self.assertIn("its two lengths differ", errors[0])
+        self.assertEqual(len(lines_of(self.folder / "out.jsonl")), 18)
+
+    def test_a_file_is_not_written_onto_itself(self):
+        path = self.packets_of("demo/start-and-halt")
+        before = path.read_bytes()
+        code, _, errors = run(ARMJIG, "trace", "convert", str(path), str(path))
+        self.assertEqual((code, len(errors)), (2, 1))
+        self.assertEqual(path.read_bytes(), before)
+
+
+if __name__ == "__main__":
+    if not all(map(shutil.which, TOOLS)):
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1])
