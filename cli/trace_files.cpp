@@ -217,7 +217,7 @@ class Merge {
   };
 
   void align() {
-    constexpr auto epoch_of = [](const Input& input) { return input.reader->header().epoch_ns; };
+    const auto epoch_of = [](const Input& input) { return input.reader->header().epoch_ns; };
     const auto first = std::ranges::min_element(inputs_, {}, epoch_of);
     epoch_ns_ = epoch_of(*first);
     if (epoch_ns_ == 0) return;

@@ -79,7 +79,7 @@ class LineCaptureReader final : public CaptureReader {
       const auto line = file_.next_line();
       if (!line) return tl::unexpected{line.error()};
       if (!*line) return false;
-      const auto taken = lines_.take(**line, event_);
+      auto taken = lines_.take(**line, event_);
       if (!taken) return taken;
       if (!*taken) continue;
       take(record);

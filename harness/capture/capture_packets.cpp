@@ -360,10 +360,10 @@ class PacketCaptureReader final : public CaptureReader {
 
   /// Whether it is an event of its own; else it is kept for the record that it belongs to.
   bool take_event(CaptureRecord& record, std::string_view text) {
-    constexpr auto npos = std::string_view::npos;
     if (is_too_deep(text)) return pass_over();
     const auto json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-    const bool is_line = text.starts_with('{') && text.ends_with('}') && text.find('\n') == npos;
+    const bool is_line =
+        text.starts_with('{') && text.ends_with('}') && text.find('\n') == std::string_view::npos;
     if (!json.is_object() || !is_line) return pass_over();
     const auto members = text.substr(1, text.size() - 2);
     if (!text.starts_with(kDetailsOf)) {

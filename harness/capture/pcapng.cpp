@@ -216,7 +216,7 @@ Outcome<bool> Reader::next_block() {
                            name_, offset_);
     return false;
   };
-  const auto has_header = fill(kFrameOfBlock);
+  auto has_header = fill(kFrameOfBlock);
   if (!has_header) return has_header;
   if (!*has_header) {
     if (end_ == begin_ && has_section_) return false;
@@ -236,7 +236,7 @@ Outcome<bool> Reader::next_block() {
   if (size < kFrameOfBlock || size % 4 != 0 || size > kMostBlockBytes) {
     return malformed(fmt::format("its length cannot be {}", size));
   }
-  const auto is_whole = fill(size);
+  auto is_whole = fill(size);
   if (!is_whole) return is_whole;
   if (!*is_whole) return ends_early();
   there = {buffer_.data() + begin_, size};

@@ -126,7 +126,7 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
 /// Grows by one line after the other.
 class TraceBuilder {
  public:
-  explicit TraceBuilder(const std::string& path) : lines_{path} { trace_.path = path; }
+  explicit TraceBuilder(std::string path) : lines_{path} { trace_.path = std::move(path); }
 
   Outcome<void> take(std::string_view line) {
     TraceEvent event;
@@ -222,7 +222,7 @@ Outcome<bool> TraceLines::take(std::string_view line, TraceEvent& event) {
 }
 
 Outcome<Trace> parse_trace(std::string path, std::string_view text) {
-  TraceBuilder builder{path};
+  TraceBuilder builder{std::move(path)};
   do {
     if (auto taken = builder.take(next_line(text)); !taken) {
       return tl::unexpected{std::move(taken.error())};

@@ -140,8 +140,8 @@ bool UserFile::starts_with(std::string_view bytes) {
     there += static_cast<char>(letter);
   }
   // The C library of Linux takes back as many as it gave.
-  for (auto it = there.rbegin(); it != there.rend(); ++it) {
-    std::ungetc(static_cast<unsigned char>(*it), file_.get());
+  for (std::size_t i = there.size(); i-- > 0;) {
+    std::ungetc(static_cast<unsigned char>(there[i]), file_.get());
   }
   return there == bytes;
 }
