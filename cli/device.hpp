@@ -21,6 +21,7 @@
 #include "emulators/memory/in_memory.hpp"
 #include "emulators/memory/serial_line.hpp"
 #include "emulators/replay/replay.hpp"
+#include "emulators/sessions/sessions.hpp"
 #include "harness/console/device_console.hpp"
 #include "harness/console/watched.hpp"
 #include "harness/core/error.hpp"
@@ -76,6 +77,7 @@ struct Device {
   MutantsEntry (*mutants)() noexcept {};
   std::optional<ProgramCheckEntry> program_check{};  ///< none: nothing is demanded of programs
   Replay replay{};                                   ///< how recordings drive it
+  DrawSession draw_session{};                        ///< none: nothing is drawn at random
   double watch_rate = 10;  ///< questions, or looks, a second unless the user wants another one
   std::vector<AddOwnCommand> commands{};
 };

@@ -11,6 +11,7 @@
 
 #include "cli/device.hpp"
 #include "cli/trace_files.hpp"
+#include "cli/trace_random.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/nesting.hpp"
@@ -129,6 +130,7 @@ void add_trace(CLI::App& app, Devices devices, Action& action) {
     action = [paths, devices] { return verify_all(*paths, devices); };
   });
   add_trace_files(*trace, devices, action);
+  add_trace_random(*trace, devices, action);
 }
 
 }  // namespace armjig::cli

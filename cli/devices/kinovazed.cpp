@@ -39,7 +39,9 @@ cli::Device device() {
           .program_check = programs::program_check(),
           .replay = {.run = replay::replay,
                      .compare = replay::session_difference,
-                     .verify_table = replay::verify_matrix}};
+                     .write = replay::write,
+                     .verify_table = replay::verify_matrix},
+          .draw_session = sessions::draw};
 }
 
 }  // namespace armjig::kinovazed

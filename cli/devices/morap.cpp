@@ -35,7 +35,10 @@ cli::Device device() {
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,
           .program_check = programs::program_check(),
-          .replay = {.run = replay::replay},
+          .replay = {.run = replay::replay,
+                     .run_plainly = replay::replay_plainly,
+                     .write = replay::write},
+          .draw_session = sessions::draw,
           .commands = {cli::add_i2c, cli::add_morap}};
 }
 

@@ -34,7 +34,8 @@ cli::Device device() {
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,
           .program_check = programs::program_check(),
-          .replay = {.run = replay::replay},
+          .replay = {.run = replay::replay, .run_plainly = replay::replay_plainly},
+          .draw_session = sessions::draw,
           .watch_rate = 100,
           .commands = {cli::add_plan, cli::add_run, cli::add_script}};
 }

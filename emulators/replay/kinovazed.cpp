@@ -15,6 +15,7 @@
 #include "emulators/kinovazed/server.hpp"
 #include "emulators/replay/kinovazed_rules.hpp"
 #include "emulators/replay/wrong_key.hpp"
+#include "harness/core/hex.hpp"
 
 namespace armjig::kinovazed::replay {
 namespace {
@@ -140,6 +141,7 @@ class Player {
     }
     drop_surplus_at_the_end(replayed);
     TraceEvent end;
+    end.line = 1;  // the header says it
     end.dir = "end";
     end.name = recording.end;
     replayed.recorded.push_back(end);
@@ -272,7 +274,7 @@ class Player {
     recorded_.push_back(expected);
     const auto id = server_.connect(now_);
     expected.name = id ? "ok" : "refused";
-    if (id) connections_[event.id] = *id;
+    connections_[event.id] = id;
     expected.time = at(now_ - start_);
     actual_.push_back(std::move(expected));
     return true;
@@ -280,20 +282,22 @@ class Player {
 
   bool send(const TraceEvent& event) {
     const auto id = connections_.find(event.id);
-    if (id != connections_.end()) server_.receive(now_, id->second, event.bytes);
-    return id != connections_.end();
+    if (id == connections_.end()) return false;
+    if (id->second) server_.receive(now_, *id->second, event.bytes);
+    return true;
   }
 
   bool disconnect(const TraceEvent& event, std::string_view how) {
     const auto id = connections_.find(event.id);
     if (id == connections_.end()) return false;
+    if (!id->second) return how.starts_with("client-");
     if (how == "client-half-close") {
-      server_.half_close(now_, id->second);
+      server_.half_close(now_, *id->second);
       return true;
     }
     closed_[event.id] = at(now_ - start_);
-    if (how == "client-close") server_.close(now_, id->second);
-    if (how == "client-reset") server_.reset(now_, id->second);
+    if (how == "client-close") server_.close(now_, *id->second);
+    if (how == "client-reset") server_.reset(now_, *id->second);
     return how == "client-close" || how == "client-reset";
   }
 
@@ -356,7 +360,7 @@ class Player {
   Instant stimulus_recorded_{};  ///< the same in the recording
   std::map<std::uint32_t, std::size_t> awaited_;
   std::map<std::uint32_t, std::size_t> came_;
-  std::map<std::uint32_t, ConnectionId> connections_;
+  std::map<std::uint32_t, std::optional<ConnectionId>> connections_;  ///< none: refused
   std::map<std::uint32_t, Instant> closed_;
   std::vector<TraceEvent> recorded_;
   std::vector<TraceEvent> actual_;
@@ -383,6 +387,30 @@ Outcome<Replayed> replay(const Trace& trace) {
     if (!session_difference(another.recorded, another.actual)) return another;
   }
   return replayed;
+}
+
+std::string write(std::string_view line, const TraceEvent& actual) {
+  using Ordered = nlohmann::ordered_json;
+  auto json = Ordered::parse(line.empty() ? "{}" : line, nullptr, /*allow_exceptions=*/false);
+  if (actual.dir == "end") {
+    const auto blank = actual.name.find(' ');
+    json["server_after"] = actual.name.substr(0, blank);
+    if (blank != std::string::npos) json["final_state"] = actual.name.substr(blank + 1);
+  } else if (actual.dir == "connect") {
+    json["text"] = actual.name;
+  } else {
+    // Rounded up: what comes just before a client's line must not seem to come after it.
+    json["t_ms"] =
+        std::chrono::ceil<std::chrono::milliseconds>(actual.time).time_since_epoch().count();
+    json["dir"] = actual.dir;
+    json["conn"] = actual.id;
+    if (actual.dir == "from_device") {
+      json["hex"] = to_hex(actual.bytes);
+    } else {
+      json["text"] = "device-eof";
+    }
+  }
+  return json.dump();
 }
 
 }  // namespace armjig::kinovazed::replay

@@ -16,4 +16,8 @@ namespace armjig::kinovazed::replay {
 /// last thing that a client or the arm did.
 [[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
 
+/// What came over a connection, the line with what became of a client's call, or the header with
+/// what is left of the server.
+[[nodiscard]] std::string write(std::string_view line, const TraceEvent& actual);
+
 }  // namespace armjig::kinovazed::replay

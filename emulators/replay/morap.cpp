@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "emulators/i2c/bus.hpp"
@@ -99,6 +100,14 @@ class Bench {
   }
   [[nodiscard]] Pen* pen() { return pen_ ? &bus_.device<Pen>(*pen_) : nullptr; }
   [[nodiscard]] i2c::Bus& bus() noexcept { return bus_; }
+
+  /// Lets nodes do one tick after the other.
+  void tick_until(Instant time) {
+    for (const auto& [address, place] : nodes_) {
+      auto& node = bus_.device<Node>(place);
+      while (node.next_tick() < time) node.advance_to(node.next_tick());
+    }
+  }
 
  private:
   i2c::Bus bus_;
@@ -261,18 +270,46 @@ class Operation {
   std::uint8_t address_ = 0;
 };
 
-}  // namespace
+enum class Ticks : std::uint8_t { kSkipIdle, kEach };
 
-Outcome<Replayed> replay(const Trace& trace) {
+Outcome<Replayed> replay(const Trace& trace, Ticks ticks) {
   auto bench = make_bench(trace);
   if (!bench) return tl::unexpected{bench.error()};
   Replayed replayed;
   for (const auto& event : trace.events) {
+    if (ticks == Ticks::kEach) bench->tick_until(event.time);
     if (Operation{event, *bench}.run(replayed)) continue;
     return problem(ErrorCode::kMalformed, fmt::format("{}:{}", trace.path, event.line),
                    "not a line that a morap recording can have");
   }
   return replayed;
+}
+
+}  // namespace
+
+Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Ticks::kSkipIdle); }
+Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Ticks::kEach); }
+
+std::string write(std::string_view line, const TraceEvent& actual) {
+  auto json = nlohmann::ordered_json::parse(line, nullptr, /*allow_exceptions=*/false);
+  std::istringstream words{actual.text};
+  const auto next = [&words] {
+    std::string name;
+    std::string value;
+    words >> name >> value;
+    return value;
+  };
+  if (actual.dir.starts_with("state")) {
+    json["servo_deg"] = std::stoi(next());
+    json["led1"] = std::stoi(next());
+    json["led2"] = std::stoi(next());
+    const auto printed = from_hex(next()).value_or(std::vector<std::byte>{});
+    json["serial"] = std::string{reinterpret_cast<const char*>(printed.data()), printed.size()};
+  } else {
+    json["ack"] = next();
+    if (actual.dir.starts_with("read")) json["hex"] = to_hex(actual.bytes);
+  }
+  return json.dump();
 }
 
 }  // namespace armjig::morap::replay

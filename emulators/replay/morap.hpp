@@ -12,4 +12,10 @@ namespace armjig::morap::replay {
 /// recording masks are 0 on both sides.
 [[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
 
+/// The same without any leap over ticks that repeat each other: slower, and the answer is the same.
+[[nodiscard]] Outcome<Replayed> replay_plainly(const Trace& trace);
+
+/// The line with acknowledgements, bytes and states in place.
+[[nodiscard]] std::string write(std::string_view line, const TraceEvent& actual);
+
 }  // namespace armjig::morap::replay

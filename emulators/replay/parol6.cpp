@@ -154,13 +154,14 @@ TraceEvent as_event(const Emission& emission) {
   return event;
 }
 
-}  // namespace
+enum class Passes : std::uint8_t { kInClosedForm, kEach };
 
-Outcome<Replayed> replay(const Trace& trace) {
+Outcome<Replayed> replay(const Trace& trace, Passes passes) {
   const auto recording = read_header(trace);
   if (!recording) return tl::unexpected{recording.error()};
   Replayed replayed;
   Board board{recording->plant, recording->timing};
+  if (passes == Passes::kEach) board.use_plain_loop();
   for (const auto& event : trace.events) {
     const bool is_stimulus_in_time = event.time <= recording->end;
     if (is_stimulus_in_time && !apply(event, board)) {
@@ -180,5 +181,10 @@ Outcome<Replayed> replay(const Trace& trace) {
   }
   return replayed;
 }
+
+}  // namespace
+
+Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Passes::kInClosedForm); }
+Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Passes::kEach); }
 
 }  // namespace armjig::parol6::replay

@@ -12,4 +12,8 @@ namespace armjig::parol6::replay {
 /// them.
 [[nodiscard]] Outcome<Replayed> replay(const Trace& trace);
 
+/// The same without any leap over passes that repeat each other: slower, and the answer is the
+/// same.
+[[nodiscard]] Outcome<Replayed> replay_plainly(const Trace& trace);
+
 }  // namespace armjig::parol6::replay

@@ -41,11 +41,20 @@ struct TableVerdict {
   std::vector<CellDifference> differences;
 };
 
+/// Time, kind, CAN identifier and bytes of an event from the device.
+[[nodiscard]] std::string write_event(std::string_view line, const TraceEvent& actual);
+
 /// How recordings of one device are replayed into a fresh emulator.
 struct Replay {
   /// Drives it with the stimulus of the recording.
   Outcome<Replayed> (*run)(const Trace& trace){};
   Comparison compare = first_difference;
+  /// The same as `run` by the plain model of the device, which computes everything and leaps over
+  /// nothing. nullptr: there is no other model.
+  Outcome<Replayed> (*run_plainly)(const Trace& trace){};
+  /// The line of a recording that says what the emulator did, one of `Replayed::actual`. `line` is
+  /// the recorded one that it answers (`actual.line`; 1 is the header); empty: it stands by itself.
+  std::string (*write)(std::string_view line, const TraceEvent& actual) = write_event;
   /// Tries it cell by cell on a table of states and commands; nullptr: there are none of the
   /// device. Problems: `kMalformed`; `where` is for messages.
   Outcome<TableVerdict> (*verify_table)(std::string_view text, const std::string& where){};
@@ -55,5 +64,9 @@ struct Replay {
 /// identical there.
 [[nodiscard]] Outcome<std::optional<TraceDifference>> verify(const Trace& trace,
                                                              const Replay& replay);
+
+/// The text of a recording: what was done in `stimulus`, which has no answers, and what the
+/// emulator does. `verify` finds no difference in it.
+[[nodiscard]] Outcome<std::string> record(const Trace& stimulus, const Replay& replay);
 
 }  // namespace armjig

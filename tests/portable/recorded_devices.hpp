@@ -28,12 +28,19 @@ struct RecordedDevice {
 
 inline constexpr std::array kRecordedDevices{
     RecordedDevice{"demo", demo::make_dissector, {.run = demo::replay::replay}},
-    RecordedDevice{
-        "kinovazed",
-        kinovazed::make_dissector,
-        {.run = kinovazed::replay::replay, .compare = kinovazed::replay::session_difference}},
-    RecordedDevice{"morap", morap::make_dissector, {.run = morap::replay::replay}},
-    RecordedDevice{"parol6", parol6::make_dissector, {.run = parol6::replay::replay}},
+    RecordedDevice{"kinovazed",
+                   kinovazed::make_dissector,
+                   {.run = kinovazed::replay::replay,
+                    .compare = kinovazed::replay::session_difference,
+                    .write = kinovazed::replay::write}},
+    RecordedDevice{"morap",
+                   morap::make_dissector,
+                   {.run = morap::replay::replay,
+                    .run_plainly = morap::replay::replay_plainly,
+                    .write = morap::replay::write}},
+    RecordedDevice{"parol6",
+                   parol6::make_dissector,
+                   {.run = parol6::replay::replay, .run_plainly = parol6::replay::replay_plainly}},
 };
 
 /// The device of a recording, or its family: `morap-node` is recorded of morap. nullptr: neither.

@@ -52,6 +52,8 @@ constexpr Room kRooms[] = {
     {"emulators/kinovazed", "harness/core harness/wire harness/arm emulators/faults"},
     {"emulators/morap", "harness/core harness/wire emulators/faults emulators/i2c"},
     {"emulators/parol6", "harness/core harness/wire emulators/faults"},
+    {"emulators/sessions",
+     "harness/core harness/wire emulators/kinovazed emulators/morap emulators/parol6"},
     {"emulators/replay",
      "harness/core harness/wire harness/capture emulators/demo emulators/i2c emulators/kinovazed "
      "emulators/morap emulators/parol6"},
@@ -81,6 +83,7 @@ const Inner kInner[] = {
     {"harness/rig/(\\w+)_judge\\..*", "::rig"},
     {"emulators/(demo|kinovazed|morap|parol6)/.*", "::emulation"},
     {"emulators/replay/(demo|kinovazed|morap|parol6)(_\\w+)?\\..*", "::replay"},
+    {"emulators/sessions/(kinovazed|morap|parol6)\\..*", "::sessions"},
     {"harness/console/(\\w+)/.*", "::console"},
     {"cli/devices/(\\w+)\\..*", ""},
     {"conformance/(\\w+)/host/.*", "::programs"},
