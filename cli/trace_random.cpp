@@ -50,7 +50,7 @@ Exit write_sessions(const Options& options, Devices devices) {
   if (!device) return report(device.error());
   if ((*device)->draw_session == nullptr) {
     return report(
-        Problem{ErrorCode::kUnknownDevice, options.device, "no sessions are drawn of that device"});
+        Problem{ErrorCode::kUnsupported, options.device, "no sessions are drawn of that device"});
   }
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);

@@ -39,7 +39,11 @@ Outcome<std::string> record(const Trace& stimulus, const Replay& replay) {
     auto text = answered(1, stimulus.header);
     auto other = others.begin();
     const auto add_others_before = [&](Instant time) {
-      for (; other != others.end() && (*other)->time < time; ++other) {
+      // With a time since the last stimulus, it came before the one of the same moment.
+      const auto came_before = [time](const TraceEvent& event) {
+        return event.time < time || (event.time == time && event.value > 0);
+      };
+      for (; other != others.end() && came_before(**other); ++other) {
         text += replay.write("", **other) + '\n';
       }
     };

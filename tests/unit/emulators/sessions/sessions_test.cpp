@@ -44,6 +44,11 @@ TEST_P(Sessions, AreTheSameInThePlainModel) {
   }
 }
 
+/// In that session a message came in the very moment of the client's next line.
+TEST(KinovazedSession, IsRecordedInOrderAlsoWithinAMillisecond) {
+  EXPECT_EQ(complaint_about_recording(kDrawnDevices[2], 1'000'430), "");
+}
+
 /// A byte of the answers is not what it was: a recording that nobody could tell from its session
 /// would pass everything above.
 TEST_P(Sessions, AreFoundToDifferInAByte) {
