@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/console/stream_link.hpp"
+#include "harness/rig/stream_link.hpp"
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"

@@ -118,7 +118,7 @@ const std::vector<Step>& steps() {
        R"((\.|->)(write|transfer)\s*\()",
        {{"harness/link/real_streams.cpp", "passes on what it is given"},
         {"harness/console/generic.cpp", "the port of the rig that it was given"},
-        {"harness/console/stream_link.cpp", "the bus of the rig that it was given"},
+        {"harness/rig/stream_link.cpp", "the bus of the rig that it was given"},
         {"harness/console/watched.cpp", "the port of the rig that it was given"},
         {"conformance/stream_bench.cpp", "the port of the rig that `armjig conformance` opened"},
         {"conformance/bus_bench.cpp", "the bus of the rig that `armjig conformance` opened"},

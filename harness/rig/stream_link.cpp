@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/console/stream_link.hpp"
+#include "harness/rig/stream_link.hpp"
 
 #include <algorithm>
 #include <cstdint>
