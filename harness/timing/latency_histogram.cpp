@@ -10,34 +10,51 @@
 
 namespace armjig {
 
-std::size_t LatencyHistogram::bucket_of(std::uint64_t nanoseconds) noexcept {
-  const auto bits = static_cast<unsigned>(std::bit_width(nanoseconds));
-  if (bits <= kFineBits) return nanoseconds;
-  if (bits > kLargestBit) return kBuckets - 1;
-  const unsigned shift = bits - kFineBits - 1;
-  // The leading bit picks the group, the six bits behind it the bucket.
-  return (std::size_t{shift} << kFineBits) + (nanoseconds >> shift);
+std::size_t LatencyHistogram::bucket_of(Duration duration) noexcept {
+  const auto value = static_cast<std::uint64_t>(std::clamp(duration, Duration{}, kLongest).count());
+  const auto bits = static_cast<unsigned>(std::bit_width(value));
+  const unsigned shift = bits <= kFineBits ? 0 : bits - kFineBits;
+  return shift * kHalf + static_cast<std::size_t>(value >> shift);
 }
 
-std::uint64_t LatencyHistogram::upper_end(std::size_t bucket) noexcept {
-  constexpr std::size_t kFine = std::size_t{1} << kFineBits;
-  if (bucket < 2 * kFine) return bucket;
-  const auto shift = (bucket >> kFineBits) - 1;
-  return ((kFine + bucket % kFine + 1) << shift) - 1;
+Duration LatencyHistogram::first_of(std::size_t bucket) noexcept {
+  if (bucket < 2 * kHalf) return Duration{static_cast<Duration::rep>(bucket)};
+  const auto shift = bucket / kHalf - 1;
+  return Duration{static_cast<Duration::rep>((bucket - shift * kHalf) << shift)};
 }
 
-void LatencyHistogram::record(Duration duration) noexcept {
+Duration LatencyHistogram::last_of(std::size_t bucket) noexcept {
+  const auto shift = bucket < 2 * kHalf ? 0 : bucket / kHalf - 1;
+  return first_of(bucket) + Duration{(Duration::rep{1} << shift) - 1};
+}
+
+void LatencyHistogram::record(Duration duration, std::uint64_t times) noexcept {
+  if (times == 0) return;
   const auto value = std::max(duration, Duration{});
-  const auto nanoseconds = static_cast<std::uint64_t>(value.count());
-  ++buckets_[bucket_of(nanoseconds)];
-  ++count_;
-  sum_ += nanoseconds;
+  counts_[bucket_of(value)] += times;
+  count_ += times;
+  sum_ += static_cast<double>(value.count()) * static_cast<double>(times);
   min_ = std::min(min_, value);
   max_ = std::max(max_, value);
 }
 
+void LatencyHistogram::record_corrected(Duration duration, Duration period) noexcept {
+  record(duration);
+  for (auto missed = duration - period; missed >= period; missed -= period) record(missed);
+}
+
+void LatencyHistogram::add(const LatencyHistogram& other) noexcept {
+  for (std::size_t i = 0; i < kBuckets; ++i) counts_[i] += other.counts_[i];
+  count_ += other.count_;
+  sum_ += other.sum_;
+  min_ = std::min(min_, other.min_);
+  max_ = std::max(max_, other.max_);
+}
+
 Duration LatencyHistogram::mean() const noexcept {
-  return count_ == 0 ? Duration{} : Duration{static_cast<Duration::rep>(sum_ / count_)};
+  if (count_ == 0) return {};
+  return std::clamp(Duration{static_cast<Duration::rep>(sum_ / static_cast<double>(count_))}, min_,
+                    max_);
 }
 
 Duration LatencyHistogram::percentile(double percent) const noexcept {
@@ -47,10 +64,10 @@ Duration LatencyHistogram::percentile(double percent) const noexcept {
       1, static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_))));
   std::uint64_t seen = 0;
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
-    seen += buckets_[bucket];
+    seen += counts_[bucket];
     if (seen < wanted) continue;
     if (seen == count_) break;  // the largest is known exactly
-    return std::clamp(Duration{static_cast<Duration::rep>(upper_end(bucket))}, min_, max_);
+    return std::clamp(last_of(bucket), min_, max_);
   }
   return max_;
 }
