@@ -57,15 +57,18 @@ Duration LatencyHistogram::mean() const noexcept {
                     max_);
 }
 
-Duration LatencyHistogram::percentile(double percent) const noexcept {
+std::uint64_t LatencyHistogram::rank_of(double percent, std::uint64_t count) noexcept {
+  const auto below = std::nextafter(std::clamp(percent, 0.0, 100.0), 0.0);
+  const auto rank = std::ceil(below * static_cast<double>(count) / 100.0);
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(rank));
+}
+
+Duration LatencyHistogram::at_rank(std::uint64_t rank) const noexcept {
   if (count_ == 0) return {};
-  const auto share = std::clamp(percent, 0.0, 100.0) / 100.0;
-  const auto wanted = std::max<std::uint64_t>(
-      1, static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_))));
   std::uint64_t seen = 0;
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
     seen += counts_[bucket];
-    if (seen < wanted) continue;
+    if (seen < rank) continue;
     if (seen == count_) break;  // the largest is known exactly
     return std::clamp(last_of(bucket), min_, max_);
   }
