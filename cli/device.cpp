@@ -33,7 +33,8 @@ std::vector<std::string_view> missing_parts(const Device& device) {
                                    {"emulate", kind.emulate != nullptr},
                                    {"make_bench", kind.make_bench != nullptr},
                                    {"open_console", kind.open_console != nullptr},
-                                   {"watch", kind.watch != nullptr}});
+                                   {"watch", kind.watch != nullptr},
+                                   {"make_probe", kind.make_probe != nullptr}});
       },
       device.port);
   std::vector<std::string_view> missing;
@@ -86,6 +87,22 @@ Outcome<std::unique_ptr<Watched>> open_watched(const Device& device, const RigOp
                                                Duration period) {
   return with_rig(device, how, [&](const auto& kind, auto rig) {
     return kind.watch(std::move(rig), how.target.text, WatchHow{period, how.when_gone});
+  });
+}
+
+Outcome<ProbedLink> open_probe(const Device& device, const RigOptions& how) {
+  const auto& target = how.target.text;
+  return with_rig(device, how, [&target](const auto& kind, auto rig) -> Outcome<ProbedLink> {
+    auto probe = kind.make_probe(rig.port(), target);
+    if (!probe) return tl::unexpected{probe.error()};
+    const auto together = [&probe](StreamLink link) {
+      return ProbedLink{std::move(link), *std::move(probe)};
+    };
+    if constexpr (std::is_same_v<decltype(rig), Rig<SessionSource>>) {
+      return StreamLink::connect(std::move(rig), target).map(together);
+    } else {
+      return together(StreamLink{std::move(rig)});
+    }
   });
 }
 

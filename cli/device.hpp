@@ -26,9 +26,11 @@
 #include "harness/console/watched.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/option.hpp"
+#include "harness/latency/probe.hpp"
 #include "harness/rig/attached.hpp"
 #include "harness/rig/real_target.hpp"
 #include "harness/rig/rig.hpp"
+#include "harness/rig/stream_link.hpp"
 #include "harness/rig/wiring.hpp"
 
 namespace armjig::cli {
@@ -48,6 +50,9 @@ struct OnPort {
                                                           Say say){};
   Outcome<std::unique_ptr<Watched>> (*watch)(Rig<Port> rig, const std::string& target,
                                              const WatchHow& how){};
+  /// How long it takes to answer is measured with that. `port` is only lent. Problems: it does not
+  /// answer, or the port.
+  Outcome<std::unique_ptr<Probe>> (*make_probe)(Port& port, const std::string& target){};
 };
 
 struct OnStream : OnPort<StreamPort, HostedStream> {
@@ -170,6 +175,13 @@ template <class Kind>
 [[nodiscard]] Outcome<std::unique_ptr<Watched>> open_watched(const Device& device,
                                                              const RigOptions& how,
                                                              Duration period);
+
+/// A target whose answers can be timed. The probe may know what `link` leads to, so it goes first.
+struct ProbedLink {
+  StreamLink link;
+  std::unique_ptr<Probe> probe;
+};
+[[nodiscard]] Outcome<ProbedLink> open_probe(const Device& device, const RigOptions& how);
 
 /// The conversation of the device's suite with a target.
 [[nodiscard]] Outcome<std::unique_ptr<Bench>> open_bench(const Device& device,

@@ -4,6 +4,7 @@
 #include "conformance/demo/suite.hpp"
 #include "emulators/demo/options.hpp"
 #include "harness/console/generic.hpp"
+#include "harness/latency/generic_probe.hpp"
 #include "harness/rig/demo_judge.hpp"
 #include "harness/wire/demo/demo.hpp"
 
@@ -29,6 +30,11 @@ Outcome<std::unique_ptr<Watched>> watch(Rig<StreamPort> rig, const std::string& 
                         {{query.begin(), query.end()}});
 }
 
+Outcome<std::unique_ptr<Probe>> make_probe(StreamPort& /*port*/, const std::string& /*target*/) {
+  const auto query = encode(Operation::kQuery);
+  return generic::make_probe("query to reply", {query.begin(), query.end()}, kMessageSize);
+}
+
 }  // namespace
 
 cli::Device device() {
@@ -39,7 +45,8 @@ cli::Device device() {
                                  .emulate = emulate,
                                  .make_bench = conformance::make_bench,
                                  .open_console = open_console,
-                                 .watch = watch}},
+                                 .watch = watch,
+                                 .make_probe = make_probe}},
           .options = emulation::options,
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,

@@ -8,6 +8,7 @@
 #include "emulators/replay/kinovazed_rules.hpp"
 #include "harness/config/option_file.hpp"
 #include "harness/console/kinovazed/console.hpp"
+#include "harness/latency/kinovazed_probe.hpp"
 #include "harness/rig/kinovazed_judge.hpp"
 #include "harness/wire/kinovazed/dissector.hpp"
 
@@ -31,7 +32,8 @@ cli::Device device() {
                                  .emulate = emulate,
                                  .make_bench = conformance::make_bench,
                                  .open_console = console::open,
-                                 .watch = console::watch},
+                                 .watch = console::watch,
+                                 .make_probe = latency::make_probe},
                                 51717},
           .options = emulation::options,
           .suite = conformance::suite,

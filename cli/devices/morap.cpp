@@ -7,6 +7,7 @@
 #include "emulators/morap/options.hpp"
 #include "harness/config/option_file.hpp"
 #include "harness/console/morap/console.hpp"
+#include "harness/latency/morap_probe.hpp"
 #include "harness/rig/morap_judge.hpp"
 #include "harness/wire/morap/dissector.hpp"
 
@@ -30,7 +31,8 @@ cli::Device device() {
                               .emulate = emulate,
                               .make_bench = conformance::make_bench,
                               .open_console = console::open,
-                              .watch = console::watch}},
+                              .watch = console::watch,
+                              .make_probe = latency::make_probe}},
           .options = emulation::options,
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,

@@ -6,6 +6,7 @@
 
 #include "gripper.hpp"
 #include "harness/console/generic.hpp"
+#include "harness/latency/generic_probe.hpp"
 #include "judge.hpp"
 #include "suite.hpp"
 
@@ -37,6 +38,13 @@ Outcome<std::unique_ptr<Watched>> watch(Rig<StreamPort> rig, const std::string& 
                         {read_request(kUnit, kStatus, kRegisters - kStatus)});
 }
 
+Outcome<std::unique_ptr<Probe>> make_probe(StreamPort& /*port*/, const std::string& /*target*/) {
+  // Address, function, count, registers and CRC ([A] 6.3).
+  constexpr std::size_t kAnswer = 3 + 2 * (kRegisters - kStatus) + 2;
+  return generic::make_probe("read of registers to their values",
+                             read_request(kUnit, kStatus, kRegisters - kStatus), kAnswer);
+}
+
 template <unsigned baud>
 cli::Device device(std::string_view name) {
   return {.name = name,
@@ -46,7 +54,8 @@ cli::Device device(std::string_view name) {
                                  .emulate = emulate<baud>,
                                  .make_bench = open_bench<baud>,
                                  .open_console = open_console,
-                                 .watch = watch},
+                                 .watch = watch,
+                                 .make_probe = make_probe},
                                 SerialLine{baud, Parity::kEven, 1}},
           .options = options,
           .suite = suite,

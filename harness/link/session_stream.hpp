@@ -25,6 +25,8 @@ class SessionStream final : public StreamPort {
   [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
     return source_->touch(input, value);
   }
+  /// The connection behind it.
+  [[nodiscard]] SessionPort& session() noexcept { return *port_; }
 
  private:
   SessionStream(std::shared_ptr<SessionSource> source, std::unique_ptr<SessionPort> port)

@@ -52,6 +52,16 @@ class Guard {
   }
   [[nodiscard]] bool is_unsupervised() const noexcept { return is_unsupervised_; }
 
+  /// For who measures times, and writes to the file of the port and reads from it without anything
+  /// between (direct_line.hpp): admits a message that is then sent by the caller, before anything
+  /// else. What came meanwhile is to be read from the port. Errors: as for sending it.
+  [[nodiscard]] Result<void> announce(Bytes message) { return admit({&message, 1}); }
+  /// What was read in that way. The guard stops the device if it has to.
+  void overhear(Bytes bytes) {
+    hear(bytes);
+    look();
+  }
+
  protected:
   /// How often a stop leaves, until the device shows that it heard it, and how far apart.
   struct Patience {

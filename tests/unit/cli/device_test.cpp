@@ -67,7 +67,8 @@ TEST(MissingParts, AreNamedForEveryKindOfPort) {
   EXPECT_THAT(missing_parts(device), Contains("suite"));
   for (const auto& port : {decltype(Device::port){OnStream{}}, {OnServer{}}, {OnBus{}}}) {
     device.port = port;
-    for (const auto* part : {"make_judge", "emulate", "make_bench", "open_console", "watch"}) {
+    for (const auto* part :
+         {"make_judge", "emulate", "make_bench", "open_console", "watch", "make_probe"}) {
       EXPECT_THAT(missing_parts(device), Contains(part));
     }
   }

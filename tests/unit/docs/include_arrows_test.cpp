@@ -46,6 +46,9 @@ constexpr Room kRooms[] = {
     {"harness/console",
      "harness/core harness/wire harness/capture harness/arm harness/link harness/timing "
      "harness/motion harness/drive harness/rig"},
+    {"harness/latency",
+     "harness/core harness/wire harness/link harness/timing harness/report harness/drive "
+     "harness/rig"},
     {"emulators/faults", "harness/core harness/wire"},
     {"emulators/demo", "harness/core harness/wire emulators/faults"},
     {"emulators/i2c", "harness/core"},
@@ -85,6 +88,7 @@ const Inner kInner[] = {
     {"emulators/replay/(demo|kinovazed|morap|parol6)(_\\w+)?\\..*", "::replay"},
     {"emulators/sessions/(kinovazed|morap|parol6)\\..*", "::sessions"},
     {"harness/console/(\\w+)/.*", "::console"},
+    {"harness/latency/(\\w+)_probe\\..*", "::latency"},
     {"cli/devices/(\\w+)\\..*", ""},
     {"conformance/(\\w+)/host/.*", "::programs"},
     {"conformance/(\\w+)/(?!host/).*", "::conformance"},

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <sys/utsname.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/checks.hpp"
+#include "cli/device.hpp"
+#include "cli/outputs.hpp"
+#include "cli/report_files.hpp"
+#include "cli/signals.hpp"
+#include "cli/target_options.hpp"
+#include "harness/files/user_file.hpp"
+#include "harness/latency/latency_run.hpp"
+#include "harness/latency/load.hpp"
+#include "harness/rig/direct_line.hpp"
+
+namespace armjig::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kHelp =
+    "Measures how long a device takes to answer, and says how far that can be believed.\n"
+    "\n"
+    "  armjig latency DEVICE --target pty:/tmp/arm\n"
+    "  armjig latency DEVICE --target emulated: --count 1000     in virtual time, at once\n"
+    "  armjig latency DEVICE --target pty:/tmp/arm --limit 'p99<2ms,lost<1' --html report.html\n"
+    "  armjig latency DEVICE --target pty:/tmp/old --against pty:/tmp/new --seconds 60\n"
+    "\n"
+    "Sends a harmless request again and again: what is sent, and what the guard has to be told "
+    "for\n"
+    "it, docs/latency.md has for each device. Ctrl-C ends it with a report of what was measured.\n"
+    "\n"
+    "Exit codes: 0 measured and within limits, 1 a limit is broken or it is slower, 3 the target\n"
+    "is absent, refuses or is silent, or nothing can be said, 130 interrupted.";
+
+struct Options {
+  std::string device;
+  TargetOptions target;
+  std::string against;
+  std::string baseline;
+  double rate = 100;
+  bool is_closed_loop = false;
+  std::size_t burst = 1;
+  std::optional<std::uint64_t> count;
+  std::optional<double> seconds;
+  double timeout = 1;
+  std::string load;
+  std::string limits;
+  int priority = 50;
+  std::optional<int> processor;
+  std::string json;
+  std::string html;
+  std::string histogram_log;
+};
+
+constexpr double kUsualSeconds = 10;
+constexpr Duration kSlice = 1s;  ///< of two targets that are alternated
+constexpr std::uint64_t kMostSlices = 1'000'000;
+
+Duration duration_of(double seconds) {
+  return std::chrono::round<Duration>(std::chrono::duration<double>{seconds});
+}
+
+/// What was asked for, read.
+struct Wanted {
+  MeterPlan plan;
+  Meter::Until until;
+  std::optional<LoadPlan> load;
+  std::vector<Limit> limits;
+  std::optional<Baseline> baseline;
+};
+
+Outcome<Wanted> wanted_of(const Options& options) {
+  Wanted wanted;
+  wanted.plan.period.reset();
+  if (!options.is_closed_loop) wanted.plan.period = duration_of(1 / options.rate);
+  wanted.plan.burst = options.burst;
+  wanted.plan.patience = duration_of(options.timeout);
+  if (options.count) wanted.until.count = *options.count;
+  const auto seconds = options.seconds.value_or(kUsualSeconds);
+  if (!options.count) wanted.until.time = duration_of(seconds);
+  const auto expected = options.count ? static_cast<double>(*options.count)
+                                      : seconds * (options.is_closed_loop ? 20e3 : options.rate) *
+                                            static_cast<double>(options.burst);
+  wanted.plan.expected =
+      static_cast<std::size_t>(std::min(expected, static_cast<double>(Meter::kMostTrips)));
+  if (!options.load.empty()) {
+    const auto load = parse_load(options.load);
+    if (!load) return tl::unexpected{load.error()};
+    wanted.load = *load;
+  }
+  if (!options.limits.empty()) {
+    auto limits = parse_limits(options.limits);
+    if (!limits) return tl::unexpected{limits.error()};
+    wanted.limits = *std::move(limits);
+  }
+  if (!options.baseline.empty()) {
+    const auto text = read_user_file(options.baseline);
+    if (!text) return tl::unexpected{text.error()};
+    auto baseline = parse_baseline(*text, options.baseline);
+    if (!baseline) return tl::unexpected{baseline.error()};
+    wanted.baseline = *std::move(baseline);
+  }
+  return wanted;
+}
+
+std::optional<Problem> problem_of(const Options& options, const RigOptions& how) {
+  const bool is_virtual = how.target.is_emulated();
+  if (is_virtual && !options.load.empty()) {
+    return Problem{ErrorCode::kBadValue, "--load", "it means nothing in virtual time"};
+  }
+  if (is_virtual && options.is_closed_loop && !options.count) {
+    return Problem{ErrorCode::kBadValue, "--closed-loop",
+                   "virtual time may stand still: say --count"};
+  }
+  if (!options.against.empty() && options.is_closed_loop && options.count) {
+    return Problem{ErrorCode::kBadValue, "--against", "say --seconds, for each of both"};
+  }
+  return std::nullopt;
+}
+
+/// A target that is measured.
+class Station {
+ public:
+  static Outcome<std::unique_ptr<Station>> open(const Device& device, const RigOptions& how) {
+    auto opened = open_probe(device, how);
+    if (!opened) return tl::unexpected{opened.error()};
+    return std::make_unique<Station>(*std::move(opened), how);
+  }
+  Station(ProbedLink opened, const RigOptions& how)
+      : link_{std::move(opened.link)}, probe_{std::move(opened.probe)} {
+    const auto line = direct_line(link_.port(), how);
+    path_ = line ? path_on(link_.port(), *line) : path_through(link_.port());
+  }
+
+  void begin(const MeterPlan& plan, const Signals& signals, MeterProgress& progress) {
+    meter_.emplace(*path_, *probe_, plan, [&signals] { return signals.has_come(); }, &progress);
+  }
+  [[nodiscard]] Meter& meter() { return *meter_; }
+  [[nodiscard]] const Probe& probe() const { return *probe_; }
+  [[nodiscard]] const Path& path() const { return *path_; }
+
+  /// Why it cannot go on.
+  [[nodiscard]] Problem problem_of(const Error& error, const std::string& target) const {
+    const auto refusal = link_.last_refusal();
+    if (error.code == ErrorCode::kForbidden && refusal) {
+      return {error.code, target, refusal->reason};
+    }
+    return {error.code, target, "is it still there and switched on?"};
+  }
+
+ private:
+  StreamLink link_;
+  std::unique_ptr<Probe> probe_;
+  std::unique_ptr<Path> path_;
+  std::optional<Meter> meter_;
+};
+
+/// Says once a second how far it is, on a thread of its own.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const MeterProgress& progress) : progress_{progress} {
+    thread_ = std::thread{[this] { run(); }};
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() {
+    must_end_ = true;
+    thread_.join();
+  }
+
+ private:
+  void run() {
+    be_ordinary();
+    for (int i = 1; !must_end_; ++i) {
+      std::this_thread::sleep_for(100ms);
+      if (i % 10 != 0 || must_end_) continue;
+      fmt::print(stderr, "{} s: {} answered, {} lost, worst {:.3f} ms\n", i / 10,
+                 progress_.answered.load(), progress_.lost.load(),
+                 static_cast<double>(progress_.worst.load()) / 1e6);
+    }
+  }
+
+  const MeterProgress& progress_;
+  std::atomic<bool> must_end_ = false;
+  std::thread thread_;
+};
+
+std::string machine() {
+  utsname names{};
+  if (::uname(&names) != 0) return "unknown";
+  return fmt::format("{} {}, {}, {} processors", names.sysname, names.release, names.machine,
+                     std::thread::hardware_concurrency());
+}
+
+/// Both targets in turn, a slice each. False: interrupted.
+Result<bool> alternate(std::span<const std::unique_ptr<Station>> stations, const Wanted& wanted,
+                       std::array<std::vector<Slice>, 2>& slices) {
+  const bool is_counted = wanted.until.time == Duration::max();
+  const auto per_slice = wanted.plan.period ? kSlice / *wanted.plan.period : 100;
+  const auto count_a_slice =
+      static_cast<std::uint64_t>(std::max<Duration::rep>(per_slice, 1)) * wanted.plan.burst;
+  const auto all = is_counted ? wanted.until.count / count_a_slice
+                              : static_cast<std::uint64_t>(wanted.until.time / kSlice);
+  for (std::uint64_t i = 0; i < std::clamp<std::uint64_t>(all, 1, kMostSlices); ++i) {
+    // Who comes first changes, or one would always follow the other.
+    for (const std::size_t side : {i % 2, 1 - i % 2}) {
+      auto& meter = stations[side]->meter();
+      const auto before = meter.measured().trips.size();
+      const auto until =
+          is_counted ? Meter::Until{.count = count_a_slice} : Meter::Until{.time = kSlice};
+      const auto done = meter.run(until);
+      if (!done || !*done) return done;
+      const auto trips = std::span{meter.measured().trips}.subspan(before);
+      if (!trips.empty()) slices[side].push_back(slice_of(trips));
+    }
+  }
+  return true;
+}
+
+Exit exit_of(const Report& report, const LatencyRun& run, const Signals& signals) {
+  if (run.is_interrupted) return signals.exit();
+  if (report.count(Verdict::kFail) > 0) return Exit::kFindings;
+  return report.count(Verdict::kInconclusive) > 0 ? Exit::kRig : Exit::kPassed;
+}
+
+/// What is left to be known once it has ended.
+void finish(LatencyRun& run, const Wanted& wanted, const Station& station) {
+  const auto& measured = run.measured;
+  run.figures = station.probe().figures(
+      {.period = wanted.plan.period, .median = measured.round_trips.percentile(50)});
+  for (const auto& limit : wanted.limits) run.limits.push_back(check(limit, measured));
+  if (!wanted.baseline) return;
+  const auto rows = percentiles_of(measured);
+  if (rows.empty()) return;
+  run.comparison =
+      compare_with(*wanted.baseline, rows.front().raw, rows.front().interval, kLatencyConfidence);
+}
+
+Exit latency(Devices devices, const Options& options) {
+  const auto found = find_device(devices, options.device);
+  if (!found) return report(found.error());
+  auto how = parse_target_options(options.target);
+  if (!how) return report(how.error());
+  if (const auto wrong = problem_of(options, *how)) return report(*wrong);
+  const auto wanted = wanted_of(options);
+  if (!wanted) return report(wanted.error());
+  const auto files = open_outputs(
+      {{"--json", options.json}, {"--html", options.html}, {"--hlog", options.histogram_log}});
+  if (!files) return report(files.error());
+
+  std::vector<RigOptions> hows{*how};
+  if (!options.against.empty()) {
+    auto other = parse_target(options.against);
+    if (!other) return report(other.error());
+    if (other->is_emulated() != how->target.is_emulated()) {
+      return report(
+          {ErrorCode::kBadValue, "--against", "virtual time and real time cannot be compared"});
+    }
+    hows.push_back(*how);
+    hows.back().target = *std::move(other);
+    hows.back().wire_log.reset();
+  }
+  Signals signals;
+  std::vector<std::unique_ptr<Station>> stations;
+  for (const auto& one : hows) {
+    auto station = Station::open(**found, one);
+    if (!station) return report(station.error());
+    stations.push_back(*std::move(station));
+  }
+
+  LatencyRun run{.device = std::string{(*found)->name},
+                 .target = how->target.text,
+                 .exchange = std::string{stations[0]->probe().exchange()},
+                 .path = std::string{stations[0]->path().name()},
+                 .machine = machine(),
+                 .load = options.load,
+                 .plan = wanted->plan,
+                 .time_on_wire = stations[0]->probe().time_on_wire()};
+  MeterProgress progress;
+  for (const auto& station : stations) station->begin(wanted->plan, signals, progress);
+
+  std::array<std::vector<Slice>, 2> slices;
+  const auto measure = [&] {
+    return stations.size() == 2 ? alternate(stations, *wanted, slices)
+                                : stations[0]->meter().run(wanted->until);
+  };
+  Result<bool> done;
+  if (how->target.is_emulated()) {
+    done = measure();
+  } else {
+    run.started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+    const Realtime realtime{{.priority = options.priority, .processor = options.processor}};
+    run.privileges = realtime.privileges();
+    const Load load{wanted->load.value_or(LoadPlan{})};
+    const ProgressLine line{progress};
+    Sentinel sentinel{stations[0]->path().now(), 1ms, 100us};
+    done = measure();
+    sentinel.stop();
+    run.witness =
+        Witness{sentinel.lateness(), {sentinel.oversleeps().begin(), sentinel.oversleeps().end()}};
+  }
+  run.measured = stations.back()->meter().measured();
+  run.is_interrupted = done && !*done;
+  if (stations.size() == 2) {
+    run.target = fmt::format("{} against {}", hows[1].target.text, hows[0].target.text);
+    run.comparison = compare_alternated(slices[0], slices[1], 1);
+  }
+  finish(run, *wanted, *stations.back());
+
+  const auto result = report_of(run);
+  const auto& [json, html, log] = *files;
+  if (json != nullptr) json->put(to_latency_json(run));
+  if (html != nullptr) html->put(to_html(result));
+  if (log != nullptr) log->put(to_latency_log(run));
+  fmt::print("{}", to_text(result));
+  if (!done) {
+    const auto& failed = *std::ranges::max_element(
+        stations, {}, [](const auto& station) { return station->meter().measured().lost; });
+    return report(failed->problem_of(done.error(), run.target));
+  }
+  if (run.measured.round_trips.count() == 0 && !run.is_interrupted) {
+    return report({ErrorCode::kTimedOut, run.target,
+                   fmt::format("no answer came: is a {} there, switched on, and free for us?",
+                               options.device)});
+  }
+  return exit_of(result, run, signals);
+}
+
+}  // namespace
+
+void add_latency(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("latency", with_example(kHelp, devices));
+  const auto options = std::make_shared<Options>();
+  add_device_argument(*command, options->device, devices);
+  add_target_options(*command, options->target);
+  auto* against =
+      command
+          ->add_option("--against", options->against,
+                       "also measure this target, in turn with the first: is it slower?")
+          ->type_name("TARGET");
+  command
+      ->add_option("--compare", options->baseline, "is it slower than this --json of another run?")
+      ->type_name("FILE")
+      ->excludes(against);
+  auto* rate = command->add_option("--rate", options->rate, "requests a second (default: 100)")
+                   ->type_name("HZ")
+                   ->check(number(0.1, 20'000));
+  command
+      ->add_flag("--closed-loop", options->is_closed_loop,
+                 "the next request as soon as the answer is there")
+      ->excludes(rate);
+  command->add_option("--burst", options->burst, "requests right after each other (default: 1)")
+      ->type_name("N")
+      ->transform(whole(1, Meter::kMostBurst));
+  auto* count = command->add_option("--count", options->count, "end after that many requests")
+                    ->type_name("N")
+                    ->transform(whole(1, std::uint64_t{1} << 62U));
+  command->add_option("--seconds", options->seconds, "end after that time (default: 10)")
+      ->type_name("S")
+      ->check(number(0.001, 1e7))
+      ->excludes(count);
+  command
+      ->add_option("--timeout", options->timeout, "an answer later than that is lost (default: 1)")
+      ->type_name("S")
+      ->check(number(0.001, 60));
+  command->add_option("--load", options->load, "threads that keep the machine busy: cpu=2,io=1")
+      ->type_name("LIST");
+  command->add_option("--limit", options->limits, "exit code 1 if it is not kept: p99<2ms,lost<1")
+      ->type_name("LIST");
+  command->add_option("--priority", options->priority, "of SCHED_FIFO, if allowed (default: 50)")
+      ->type_name("N")
+      ->transform(whole(1, 99));
+  command->add_option("--processor", options->processor, "stay on that one, if allowed")
+      ->type_name("N")
+      ->transform(whole(0, 1023));
+  command->add_option("--json", options->json, "also write all of it as JSON (armjig.latency/1)")
+      ->type_name("FILE");
+  command->add_option("--html", options->html, "also write a page with curves")->type_name("FILE");
+  command->add_option("--hlog", options->histogram_log, "also write a log for HdrHistogram's tools")
+      ->type_name("FILE");
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return latency(devices, *options); };
+  });
+}
+
+}  // namespace armjig::cli

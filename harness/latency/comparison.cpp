@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/latency/comparison.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <nlohmann/json.hpp>
+
+namespace armjig {
+namespace {
+
+/// Two figures are looked at, so that in all one of 100 comparisons of the same errs.
+constexpr double kConfidence = 0.995;
+constexpr std::size_t kFewestPairs = 10;
+
+Difference verdict_of(const ConfidenceInterval& interval) noexcept {
+  if (interval.low > Duration{}) return Difference::kSlower;
+  return interval.high < Duration{} ? Difference::kFaster : Difference::kNone;
+}
+
+Difference worst_of(const std::vector<Compared>& figures) noexcept {
+  const auto has = [&figures](Difference wanted) {
+    return std::ranges::find(figures, wanted, &Compared::difference) != figures.end();
+  };
+  for (const auto one : {Difference::kSlower, Difference::kFaster, Difference::kUnclear}) {
+    if (has(one)) return one;
+  }
+  return Difference::kNone;
+}
+
+Duration median_of(std::vector<Duration> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Compared compare(std::string_view figure, std::span<const Slice> first,
+                 std::span<const Slice> second, Duration Slice::* of, std::uint64_t seed) {
+  std::vector<Duration> ones;
+  std::vector<Duration> others;
+  std::vector<Duration> differences;
+  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
+    ones.push_back(first[i].*of);
+    others.push_back(second[i].*of);
+    differences.push_back(others.back() - ones.back());
+  }
+  Compared compared{.figure = std::string{figure}, .difference = Difference::kUnclear};
+  if (differences.empty()) return compared;
+  compared.first = median_of(ones);
+  compared.second = median_of(others);
+  compared.interval = mean_interval(differences, {.confidence = kConfidence, .seed = seed});
+  if (differences.size() >= kFewestPairs) compared.difference = verdict_of(compared.interval);
+  return compared;
+}
+
+}  // namespace
+
+std::string_view to_string(Difference difference) noexcept {
+  constexpr std::array<std::string_view, 4> kWords{"no difference", "slower", "faster", "unclear"};
+  return kWords[static_cast<std::size_t>(difference)];
+}
+
+Slice slice_of(std::span<const RoundTrip> trips) {
+  assert(!trips.empty());
+  std::vector<Duration> durations;
+  Duration sum{};
+  for (const auto& trip : trips) {
+    durations.push_back(trip.duration);
+    sum += trip.duration;
+  }
+  return {median_of(std::move(durations)), sum / static_cast<Duration::rep>(trips.size())};
+}
+
+LatencyComparison compare_alternated(std::span<const Slice> first, std::span<const Slice> second,
+                                     std::uint64_t seed) {
+  LatencyComparison comparison{
+      .confidence = kConfidence,
+      .rests_on = fmt::format("{} pairs of alternated slices, bootstrap of their differences",
+                              std::min(first.size(), second.size()))};
+  comparison.figures.push_back(compare("median", first, second, &Slice::median, seed));
+  comparison.figures.push_back(compare("mean", first, second, &Slice::mean, seed));
+  comparison.difference = worst_of(comparison.figures);
+  return comparison;
+}
+
+Outcome<Baseline> parse_baseline(std::string_view json, const std::string& where) {
+  const auto content = nlohmann::json::parse(json, nullptr, false);
+  const auto wrong = [&where](const char* hint) {
+    return problem(ErrorCode::kMalformed, where, hint);
+  };
+  const auto schema = content.is_object() ? content.find("schema") : content.end();
+  if (schema == content.end() || *schema != "armjig.latency/1") {
+    return wrong("it is no report of armjig latency --json");
+  }
+  try {
+    for (const auto& one : content.at("round_trip").at("percentiles")) {
+      if (one.at("percent").get<double>() != 50.0) continue;
+      const auto time = [&one](const char* name) {
+        return Duration{one.at(name).get<Duration::rep>()};
+      };
+      return Baseline{.median = time("ns"),
+                      .interval = {time("low_ns"), time("high_ns")},
+                      .text = fmt::format("{} of {}", content.at("target").get<std::string>(),
+                                          content.at("date").get<std::string>())};
+    }
+  } catch (const nlohmann::json::exception&) {
+    return wrong("a figure is missing in it or is no number");
+  }
+  return wrong("it has no median");
+}
+
+LatencyComparison compare_with(const Baseline& baseline, Duration median,
+                               const ConfidenceInterval& interval, double confidence) {
+  Compared compared{.figure = "median", .first = baseline.median, .second = median};
+  compared.interval = {interval.low - baseline.interval.high,
+                       interval.high - baseline.interval.low};
+  compared.difference = verdict_of(compared.interval);
+  return {.figures = {compared},
+          .confidence = confidence,
+          .rests_on = "intervals of both runs: " + baseline.text,
+          .difference = compared.difference};
+}
+
+}  // namespace armjig

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/error.hpp"
+#include "harness/latency/meter.hpp"
+#include "harness/timing/block_bootstrap.hpp"
+
+namespace armjig {
+
+/// What the difference of two runs came to.
+enum class Difference : std::uint8_t { kNone, kSlower, kFaster, kUnclear };
+
+[[nodiscard]] std::string_view to_string(Difference difference) noexcept;
+
+/// Of one figure: the second run minus the first.
+struct Compared {
+  std::string figure;  ///< `median` or `mean`
+  Duration first{};
+  Duration second{};
+  ConfidenceInterval interval{};  ///< of the difference
+  Difference difference{};
+};
+
+struct LatencyComparison {
+  std::vector<Compared> figures;
+  double confidence{};
+  std::string rests_on;
+  /// Of all figures: slower if one is, then faster; unclear if nothing can be said.
+  Difference difference{};
+};
+
+/// What a comparison keeps of a stretch of a run that is alternated with another one.
+struct Slice {
+  Duration median{};
+  Duration mean{};
+};
+
+/// Of round trips that were measured in one stretch. Requires some.
+[[nodiscard]] Slice slice_of(std::span<const RoundTrip> trips);
+
+/// Two targets in alternated slices, so that what comes over the machine comes over both: the
+/// intervals are those of the mean difference of neighbours. Below ten pairs it is unclear.
+[[nodiscard]] LatencyComparison compare_alternated(std::span<const Slice> first,
+                                                   std::span<const Slice> second,
+                                                   std::uint64_t seed);
+
+/// A figure of a stored run, with its noise floor: what it was, and between which values it lay.
+struct Baseline {
+  Duration median{};
+  ConfidenceInterval interval{};
+  std::string text;  ///< target and date, for people
+};
+
+/// Reads a run that was stored as JSON. Problems: `kMalformed`; `where` is for messages.
+[[nodiscard]] Outcome<Baseline> parse_baseline(std::string_view json, const std::string& where);
+
+/// Slower or faster only if both intervals of the median lie apart: what two runs of the same
+/// differ by is in there as far as each of them saw it.
+[[nodiscard]] LatencyComparison compare_with(const Baseline& baseline, Duration median,
+                                             const ConfidenceInterval& interval, double confidence);
+
+}  // namespace armjig

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "harness/core/error.hpp"
+#include "harness/latency/probe.hpp"
+#include "harness/link/bus_port.hpp"
+
+namespace armjig::morap::latency {
+
+/// The angle of the first node that answers: a write of one byte, then a read of four. Problems:
+/// nobody answers (`kTimedOut`), trouble with the bus. `target` is for messages.
+[[nodiscard]] Outcome<std::unique_ptr<Probe>> make_probe(BusPort& port, const std::string& target);
+
+}  // namespace armjig::morap::latency

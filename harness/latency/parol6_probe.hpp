@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "harness/core/error.hpp"
+#include "harness/latency/probe.hpp"
+#include "harness/link/stream_port.hpp"
+
+namespace armjig::parol6::latency {
+
+/// An idle frame, which the board answers with telemetry and does nothing about, but that outputs
+/// and gripper go off. Telemetry says how long after the one before the frame was accepted, by the
+/// board's own clock: the second witness of when frames left.
+[[nodiscard]] Outcome<std::unique_ptr<Probe>> make_probe(StreamPort& port,
+                                                         const std::string& target);
+
+}  // namespace armjig::parol6::latency

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/latency/path.hpp"
+
+#include <linux/errqueue.h>
+#include <linux/net_tstamp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+
+timespec timespec_of(Duration duration) noexcept {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(duration);
+  return {.tv_sec = static_cast<time_t>(seconds.count()),
+          .tv_nsec = static_cast<long>((duration - seconds).count())};
+}
+
+Duration duration_of(const timespec& time) noexcept {
+  return std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
+}
+
+/// What stamps of the kernel are.
+Duration wall_clock() noexcept {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);  // in user space, as steady_clock
+  return duration_of(now);
+}
+
+class PortPath final : public Path {
+ public:
+  explicit PortPath(StreamPort& port) : port_{port} {}
+
+  Instant now() const override { return port_.now(); }
+  Result<Arrival> drain(std::span<std::byte> into) override { return receive(into, port_.now()); }
+  Result<void> send(Bytes message) override { return port_.write(message); }
+  Result<Arrival> receive(std::span<std::byte> into, Instant deadline) override {
+    const auto size = port_.read(into, deadline);
+    if (!size) return tl::unexpected{size.error()};
+    return Arrival{*size, port_.now()};
+  }
+  std::string_view name() const noexcept override { return "the port with its layers"; }
+
+ private:
+  StreamPort& port_;
+};
+
+class FilePath final : public Path {
+ public:
+  FilePath(StreamPort& port, const DirectLine& line) : port_{port}, line_{line} {
+    int type = 0;
+    socklen_t size = sizeof type;
+    is_socket_ = ::getsockopt(line.descriptor, SOL_SOCKET, SO_TYPE, &type, &size) == 0;
+    const int flags = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
+    has_stamps_ = is_socket_ && ::setsockopt(line.descriptor, SOL_SOCKET, SO_TIMESTAMPING, &flags,
+                                             sizeof flags) == 0;
+  }
+
+  Instant now() const override { return port_.now(); }
+  Result<void> announce(Bytes message) override {
+    auto admitted = line_.guard->announce(message);
+    if (admitted) admitted_ += message.size();
+    return admitted;
+  }
+  Result<Arrival> drain(std::span<std::byte> into) override {
+    const auto size = port_.read(into, port_.now());
+    if (!size) return tl::unexpected{size.error()};
+    return Arrival{*size, port_.now()};
+  }
+  void overhear(Bytes bytes) override { line_.guard->overhear(bytes); }
+  std::string_view name() const noexcept override {
+    if (has_stamps_) return "poll, recvmsg, send; SO_TIMESTAMPING";
+    return is_socket_ ? "poll, recvmsg, send" : "poll, read, write";
+  }
+
+  Result<void> send(Bytes message) override {
+    if (message.size() > admitted_) return fail(ErrorCode::kForbidden);
+    admitted_ -= message.size();
+    while (!message.empty()) {
+      const auto sent = is_socket_
+                            ? ::send(line_.descriptor, message.data(), message.size(), MSG_NOSIGNAL)
+                            : ::write(line_.descriptor, message.data(), message.size());
+      if (sent > 0) {
+        message = message.subspan(static_cast<std::size_t>(sent));
+      } else if (sent < 0 && errno == EAGAIN) {
+        const auto can = wait(POLLOUT, port_.now() + kPatience);
+        if (!can) return tl::unexpected{can.error()};
+        if (!*can) return fail(ErrorCode::kTimedOut);
+      } else if (sent < 0 && errno != EINTR) {
+        return tl::unexpected{gone(errno)};
+      }
+    }
+    return {};
+  }
+
+  Result<Arrival> receive(std::span<std::byte> into, Instant deadline) override {
+    for (;;) {
+      const auto has_come = wait(POLLIN, deadline);
+      if (!has_come) return tl::unexpected{has_come.error()};
+      if (!*has_come) return Arrival{0, port_.now()};
+      Arrival arrival;
+      const auto size = is_socket_ ? read_socket(into, arrival)
+                                   : ::read(line_.descriptor, into.data(), into.size());
+      if (!arrival.kernel) arrival.time = port_.now();
+      arrival.size = static_cast<std::size_t>(std::max<ssize_t>(size, 0));
+      if (size > 0) return arrival;
+      if (size == 0) return fail(ErrorCode::kDisconnected);
+      if (errno != EAGAIN && errno != EINTR) return tl::unexpected{gone(errno)};
+    }
+  }
+
+ private:
+  static constexpr Duration kPatience = 2s;
+
+  static Error gone(int error_number) noexcept {
+    if (error_number == EIO) return {ErrorCode::kDisconnected, error_number};
+    return error_from_errno(error_number);
+  }
+
+  Result<bool> wait(short events, Instant deadline) const noexcept {
+    pollfd entry{.fd = line_.descriptor, .events = events, .revents = 0};
+    for (;;) {
+      const auto patience = timespec_of(std::max(deadline - port_.now(), Duration{}));
+      const auto ready = ::ppoll(&entry, 1, &patience, nullptr);
+      if (ready >= 0) return ready > 0;
+      if (errno != EINTR) return fail(ErrorCode::kSystem, errno);
+    }
+  }
+
+  ssize_t read_socket(std::span<std::byte> into, Arrival& arrival) const noexcept {
+    iovec place{.iov_base = into.data(), .iov_len = into.size()};
+    alignas(cmsghdr) std::array<std::byte, 256> control;
+    msghdr message{};
+    message.msg_iov = &place;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    const auto size = ::recvmsg(line_.descriptor, &message, 0);
+    if (size <= 0 || !has_stamps_) return size;
+    arrival.time = port_.now();
+    const auto wall = wall_clock();
+    for (auto* part = CMSG_FIRSTHDR(&message); part != nullptr;
+         part = CMSG_NXTHDR(&message, part)) {
+      if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPING) continue;
+      scm_timestamping stamps{};
+      std::memcpy(&stamps, CMSG_DATA(part), sizeof stamps);
+      if (stamps.ts[0].tv_sec == 0) continue;
+      const timespec stamp{stamps.ts[0].tv_sec, stamps.ts[0].tv_nsec};
+      arrival.kernel = arrival.time - std::max(wall - duration_of(stamp), Duration{});
+    }
+    return size;
+  }
+
+  StreamPort& port_;
+  DirectLine line_;
+  std::size_t admitted_ = 0;  ///< bytes that the guard said yes to, and that are not sent
+  bool is_socket_ = false;
+  bool has_stamps_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Path> path_through(StreamPort& port) { return std::make_unique<PortPath>(port); }
+
+std::unique_ptr<Path> path_on(StreamPort& port, const DirectLine& line) {
+  return std::make_unique<FilePath>(port, line);
+}
+
+}  // namespace armjig

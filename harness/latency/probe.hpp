@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/core/bytes.hpp"
+#include "harness/core/time.hpp"
+#include "harness/rig/judge.hpp"
+
+namespace armjig {
+
+/// Something that was measured or computed besides round trips.
+struct Figure {
+  std::string name;
+  double value{};
+  std::string unit;
+  std::string rests_on;  ///< what it was computed from
+};
+
+/// What the figures of a device may need of the run.
+struct RunFacts {
+  std::optional<Duration> period;  ///< between requests; none: closed loop
+  Duration median{};               ///< of the round trips
+};
+
+/// What of a device is needed to measure how long it takes to answer: one harmless request, and how
+/// its answer is told. On a bus, messages are as of `StreamLink`.
+///
+/// `request`, `receive` and `answered` are called between two measurements or inside one, so they
+/// allocate nothing.
+class Probe {
+ public:
+  Probe() = default;
+  Probe(const Probe&) = delete;
+  Probe& operator=(const Probe&) = delete;
+  virtual ~Probe() = default;
+
+  /// What is measured, as in `idle frame to telemetry`.
+  [[nodiscard]] virtual std::string_view exchange() const noexcept = 0;
+  /// What the user has to agree to for the request; at least that the device answers.
+  [[nodiscard]] virtual Hazard hazard() const noexcept = 0;
+
+  /// The next request: what is written one after the other. Valid until the next call.
+  [[nodiscard]] virtual Messages request() = 0;
+  /// Takes what came, however it was cut. How many answers end in there, in the order of the
+  /// requests; what the device says by itself is none.
+  [[nodiscard]] virtual std::size_t receive(Instant now, Bytes bytes) = 0;
+  /// The answer that ended last belongs to a request that was sent then.
+  virtual void answered(Instant /*sent*/, Instant /*received*/) {}
+
+  /// How long the bits of an exchange take on its link; none if nobody can know.
+  [[nodiscard]] virtual std::optional<Duration> time_on_wire() const { return std::nullopt; }
+  /// The device's own, after the run.
+  [[nodiscard]] virtual std::vector<Figure> figures(const RunFacts& /*facts*/) const { return {}; }
+};
+
+}  // namespace armjig
