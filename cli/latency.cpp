@@ -150,6 +150,13 @@ class Station {
   [[nodiscard]] const Probe& probe() const { return *probe_; }
   [[nodiscard]] const Path& path() const { return *path_; }
 
+  /// Why the guard would refuse the request.
+  [[nodiscard]] std::optional<Problem> refusal_of(const RigOptions& how) const {
+    if (how.target.is_emulated()) return std::nullopt;
+    const auto refusal = demand(probe_->hazard(), how.permissions, probe_->exchange());
+    if (!refusal) return std::nullopt;
+    return Problem{ErrorCode::kForbidden, how.target.text, refusal->reason};
+  }
   /// Why it cannot go on.
   [[nodiscard]] Problem problem_of(const Error& error, const std::string& target) const {
     const auto refusal = link_.last_refusal();
@@ -276,6 +283,7 @@ Exit latency(Devices devices, const Options& options) {
   for (const auto& one : hows) {
     auto station = Station::open(**found, one);
     if (!station) return report(station.error());
+    if (const auto refused = (*station)->refusal_of(one)) return report(*refused);
     stations.push_back(*std::move(station));
   }
 

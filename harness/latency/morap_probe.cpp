@@ -20,9 +20,8 @@ constexpr auto kTransactions = kBits * kBitTime;
 class AngleProbe final : public Probe {
  public:
   explicit AngleProbe(BusAddress node) noexcept
-      : choice_{static_cast<std::byte>(node.value << 1U),
-                static_cast<std::byte>(CommandId::kReadAngle)},
-        read_{static_cast<std::byte>(node.value << 1U | 1U), std::byte{kAngleSize}} {}
+      : choice_{head_of(write_to(node, {})), static_cast<std::byte>(CommandId::kReadAngle)},
+        read_{head_of(read_from(node, {})), std::byte{kAngleSize}} {}
 
   std::string_view exchange() const noexcept override {
     return "read of an angle, two transactions";

@@ -50,7 +50,7 @@ TEST(LatencyHistogram, PercentilesAreWithinAThousandthOfTheSortedValues) {
   EXPECT_EQ(histogram.min().count(), values.front());
   EXPECT_EQ(histogram.max().count(), values.back());
   // Of 10,000 values, in whole hundredths of a percent: 99.9 % is the one at place 9,990.
-  for (const std::size_t rank : {1, 100, 2'500, 5'000, 9'000, 9'900, 9'990, 10'000}) {
+  for (const std::size_t rank : {1U, 100U, 2'500U, 5'000U, 9'000U, 9'900U, 9'990U, 10'000U}) {
     const auto percent = static_cast<double>(rank) / 100;
     const auto exact = static_cast<double>(values[rank - 1]);
     const auto shown = static_cast<double>(histogram.percentile(percent).count());
