@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <span>
-#include <string>
 
 #include "harness/core/error.hpp"
 

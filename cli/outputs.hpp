@@ -7,8 +7,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
-#include <string>
-#include <string_view>
 
 #include "cli/command.hpp"
 #include "harness/core/error.hpp"

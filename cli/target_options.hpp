@@ -2,8 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <string>
-#include <string_view>
 
 #include "harness/core/error.hpp"
 #include "harness/rig/rig.hpp"

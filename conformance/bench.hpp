@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <random>
-#include <string>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 

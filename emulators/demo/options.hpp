@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "emulators/demo/demo.hpp"
 #include "emulators/faults/faulty.hpp"

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 

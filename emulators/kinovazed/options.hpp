@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "emulators/kinovazed/defects/defective_server.hpp"
 #include "harness/core/error.hpp"

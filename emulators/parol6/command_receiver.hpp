@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <optional>
-#include <span>
 
 #include "emulators/parol6/firmware_receiver.hpp"
 #include "emulators/parol6/profile.hpp"

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
 
 #include "harness/core/bytes.hpp"
 #include "harness/wire/parol6/frame.hpp"

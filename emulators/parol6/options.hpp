@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "emulators/faults/faulty.hpp"
 #include "emulators/parol6/defects/defects.hpp"

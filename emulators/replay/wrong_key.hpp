@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <string_view>
-
 #include "harness/capture/trace.hpp"
 #include "harness/core/error.hpp"
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <deque>
 #include <memory>
-#include <span>
-#include <string>
-#include <string_view>
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "harness/rig/stream_link.hpp"
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
+#include "harness/rig/stream_link.hpp"
 
 namespace armjig {
 

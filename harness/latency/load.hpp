@@ -2,8 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 

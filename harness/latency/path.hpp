@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
 
 #include "harness/core/error.hpp"
 #include "harness/link/stream_port.hpp"

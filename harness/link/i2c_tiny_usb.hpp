@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "harness/core/error.hpp"
 #include "harness/link/bus_port.hpp"

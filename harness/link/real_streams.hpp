@@ -2,8 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <string_view>
 
 #include "harness/core/error.hpp"
 #include "harness/link/serial_line.hpp"

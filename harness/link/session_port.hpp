@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
 #include "harness/link/endpoint.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
 
 #include "harness/core/error.hpp"
 #include "harness/link/session_source.hpp"

@@ -3,7 +3,6 @@
 
 #include <sys/types.h>
 
-#include <string>
 #include <utility>
 
 #include "harness/core/error.hpp"

@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <string_view>
 
 #include "harness/core/error.hpp"
 #include "harness/link/serial_line.hpp"

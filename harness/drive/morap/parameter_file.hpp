@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <string_view>
-
 #include "harness/core/error.hpp"
 #include "harness/wire/morap/controller_set.hpp"
 

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "harness/core/bytes.hpp"
 #include "harness/wire/dissector.hpp"

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <string_view>
 #include <tl/expected.hpp>
 #include <variant>

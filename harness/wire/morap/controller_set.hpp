@@ -2,10 +2,7 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <variant>
 
 #include "harness/core/bytes.hpp"

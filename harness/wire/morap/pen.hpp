@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
-#include <cstddef>
-#include <cstdint>
-
 #include "harness/core/bytes.hpp"
 #include "harness/core/time.hpp"
 
