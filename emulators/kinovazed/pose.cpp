@@ -73,9 +73,10 @@ Pose transformed(const Frame& origin, const Pose& point) noexcept {
 
 bool is_in_workspace(const Pose& pose) noexcept {
   // Only the lower limit in x is compared in single precision.
-  const bool is_x_inside = pose.x >= -0.8F && static_cast<double>(pose.x) <= 0.8;
-  return is_x_inside && std::abs(static_cast<double>(pose.y)) <= 0.85 &&
-         static_cast<double>(pose.z) < 1.15;
+  constexpr auto kLeastX = static_cast<float>(-workspace::kX);
+  const bool is_x_inside = pose.x >= kLeastX && static_cast<double>(pose.x) <= workspace::kX;
+  return is_x_inside && std::abs(static_cast<double>(pose.y)) <= workspace::kY &&
+         static_cast<double>(pose.z) < workspace::kZ;
 }
 
 bool has_changed(const Pose& before, const Pose& after) noexcept {

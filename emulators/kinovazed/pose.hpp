@@ -32,8 +32,14 @@ struct Frame {
 /// `point`, given in `origin`, in the frame that `origin` is given in.
 [[nodiscard]] Pose transformed(const Frame& origin, const Pose& point) noexcept;
 
-/// The server's own limits: |x| 0.8 m, |y| 0.85 m, z below 1.15 m. It compares single with double
-/// precision, so -0.8 is inside and 0.8, 0.85 and -0.85 are not.
+/// The server's own limits, in metres: of |x|, of |y|, and of z, which stays below it.
+namespace workspace {
+inline constexpr double kX = 0.8;
+inline constexpr double kY = 0.85;
+inline constexpr double kZ = 1.15;
+}  // namespace workspace
+
+/// It compares single with double precision, so -0.8 is inside and 0.8, 0.85 and -0.85 are not.
 [[nodiscard]] bool is_in_workspace(const Pose& pose) noexcept;
 
 /// Whether any component differs by 0.00001 or more.

@@ -389,8 +389,8 @@ void Worker::forget_arm() {
 
 Deflection Worker::bounded(Deflection deflection) const noexcept {
   // kinovazed.joystick.bounds: the limits are double, the pose is not.
-  constexpr double kX = 0.8 - 0.01;
-  constexpr double kY = 0.85 - 0.01;
+  constexpr double kX = workspace::kX - 0.01;
+  constexpr double kY = workspace::kY - 0.01;
   const double x = pose_.x;
   const double y = pose_.y;
   if ((deflection.x > 0 && x <= -kX) || (deflection.x < 0 && x >= kX)) deflection.x = 0;

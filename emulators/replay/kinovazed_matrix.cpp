@@ -27,7 +27,6 @@ constexpr std::string_view kFormat = "state-command-matrix/1";
 constexpr Duration kReplies = 200ms;
 /// So long before a heartbeat the command was sent.
 constexpr Duration kBeforeBeat = 320ms;
-constexpr Duration kBeatPeriod = 1s;
 /// By then the slow arm is anywhere.
 constexpr Duration kRest = 30s;
 constexpr std::string_view kBeat = "Heartbeat:";
@@ -126,12 +125,12 @@ Session session_in(const Route& route) {
   auto probe = Session{route, {}};
   Duration until_beat{};
   constexpr Duration kGlance = 10ms;
-  for (bool has_beat = false; !has_beat && until_beat < 2 * kBeatPeriod; until_beat += kGlance) {
+  for (bool has_beat = false; !has_beat && until_beat < 2 * pace::kBeat; until_beat += kGlance) {
     probe.pass(kGlance);
     auto messages = probe.take_messages();
     has_beat = !take_beats(messages).empty();
   }
-  return Session{route, (until_beat - kBeforeBeat + kBeatPeriod) % kBeatPeriod};
+  return Session{route, (until_beat - kBeforeBeat + pace::kBeat) % pace::kBeat};
 }
 
 /// By the keys of a cell.
