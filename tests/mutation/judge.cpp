@@ -96,8 +96,8 @@ int judge(std::span<char*> arguments) {
     fmt::print(stderr, "{}\n", dlerror());
     return 2;
   }
-  const auto entry = reinterpret_cast<Judged (*)()>(dlsym(object, kEntry));
-  const auto judged = entry();
+  const auto entry = reinterpret_cast<const Judged* (*)()>(dlsym(object, kEntry));
+  const auto& judged = *entry();
   const auto where =
       told_apart_by(**device, judged, arguments[3], std::strtoull(arguments[4], nullptr, 10));
   fmt::print("{}\n", where.empty() ? "same" : "differs: " + where);

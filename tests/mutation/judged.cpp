@@ -14,6 +14,7 @@ armjig::Outcome<armjig::AnyHosted> emulate(const armjig::DeviceOptions& options,
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) armjig::mutation::Judged armjig_judged() {
-  return {armjig::ARMJIG_DEVICE::replay::replay, emulate};
+extern "C" __attribute__((visibility("default"))) const armjig::mutation::Judged* armjig_judged() {
+  static constexpr armjig::mutation::Judged kJudged{armjig::ARMJIG_DEVICE::replay::replay, emulate};
+  return &kJudged;
 }
