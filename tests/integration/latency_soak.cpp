@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// What measuring costs: round trips of `armjig latency`'s meter beside those of a bare write, poll
+// and read, in alternated rounds against one echo, over a pseudo-terminal and over TCP. And what
+// two rounds of the bare one differ by. Ratios are medians of the rounds'.
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): POSIX, posix_openpt
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "harness/latency/generic_probe.hpp"
+#include "harness/latency/meter.hpp"
+#include "harness/rig/demo_judge.hpp"
+#include "harness/rig/guarded_ports.hpp"
+#include "harness/timing/realtime.hpp"
+#include "harness/wire/demo/demo.hpp"
+
+namespace armjig {
+namespace {
+
+constexpr int kRounds = 11;
+constexpr std::size_t kTrips = 5'000;
+
+/// Two files of one link.
+struct Ends {
+  Descriptor near;
+  Descriptor far;
+};
+
+Ends make_tcp() {
+  const Descriptor listener{::socket(AF_INET, SOCK_STREAM, 0)};
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const any = reinterpret_cast<sockaddr*>(&address);
+  (void)::bind(listener.value(), any, size);
+  (void)::getsockname(listener.value(), any, &size);
+  (void)::listen(listener.value(), 1);
+  Ends ends{Descriptor{::socket(AF_INET, SOCK_STREAM, 0)}, Descriptor{}};
+  (void)::connect(ends.near.value(), any, size);
+  ends.far = Descriptor{::accept(listener.value(), nullptr, nullptr)};
+  (void)::fcntl(ends.near.value(), F_SETFL, O_NONBLOCK);
+  const int yes = 1;
+  for (const auto* const end : {&ends.near, &ends.far}) {
+    (void)::setsockopt(end->value(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  }
+  return ends;
+}
+
+Ends make_terminal() {
+  Descriptor master{::posix_openpt(O_RDWR | O_NOCTTY)};
+  (void)::grantpt(master.value());
+  (void)::unlockpt(master.value());
+  Descriptor slave{::open(::ptsname(master.value()), O_RDWR | O_NOCTTY | O_NONBLOCK)};
+  termios settings{};
+  ::tcgetattr(slave.value(), &settings);
+  ::cfmakeraw(&settings);
+  ::tcsetattr(slave.value(), TCSANOW, &settings);
+  return {std::move(slave), std::move(master)};
+}
+
+/// Until the other end is closed.
+void echo(int file) {
+  std::array<std::byte, 256> buffer;
+  for (;;) {
+    pollfd entry{.fd = file, .events = POLLIN, .revents = 0};
+    (void)::poll(&entry, 1, -1);
+    const auto size = ::read(file, buffer.data(), buffer.size());
+    if (size <= 0) return;
+    (void)!::write(file, buffer.data(), static_cast<std::size_t>(size));
+  }
+}
+
+struct Round {
+  double median;
+  double p99;
+};
+
+Round round_of(const LatencyHistogram& histogram) {
+  return {static_cast<double>(histogram.percentile(50).count()),
+          static_cast<double>(histogram.percentile(99).count())};
+}
+
+Round bare(int file, Bytes request) {
+  using Clock = std::chrono::steady_clock;
+  LatencyHistogram histogram;
+  std::array<std::byte, 256> buffer;
+  for (std::size_t i = 0; i < kTrips; ++i) {
+    const auto sent = Clock::now();
+    (void)!::write(file, request.data(), request.size());
+    for (std::size_t came = 0; came < request.size();) {
+      pollfd entry{.fd = file, .events = POLLIN, .revents = 0};
+      (void)::poll(&entry, 1, -1);
+      const auto size = ::read(file, buffer.data(), buffer.size());
+      if (size > 0) came += static_cast<std::size_t>(size);
+    }
+    histogram.record(Clock::now() - sent);
+  }
+  return round_of(histogram);
+}
+
+Round ours(StreamPort& port, Bytes request) {
+  const auto probe = generic::make_probe("echo", {request.begin(), request.end()}, request.size());
+  const auto path = path_on(port, direct_line(port, {}).value());
+  Meter meter{*path, *probe, {.period = std::nullopt, .expected = kTrips}, [] { return false; }};
+  if (!meter.run({.count = kTrips}).value_or(false)) fmt::print("the link has gone\n");
+  return round_of(meter.measured().round_trips);
+}
+
+double middle(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+bool compare(std::string_view name, Ends ends, DescriptorStream::Put put) {
+  const auto request = demo::encode(demo::Operation::kQuery);
+  const auto near = ends.near.value();
+  std::thread other{[file = ends.far.value()] {
+    be_ordinary();
+    echo(file);
+  }};
+  auto port = GuardedStream::guard(std::make_unique<DescriptorStream>(std::move(ends.near), put),
+                                   demo::rig::make_judge(), {});
+  std::array<std::byte, 16> opening;  // of the judge, echoed
+  (void)(*port)->read(opening, (*port)->now() + std::chrono::milliseconds{50});
+  std::array<std::vector<double>, 4> ratios;
+  for (int i = 0; i < kRounds; ++i) {
+    const auto first = bare(near, request);
+    const auto measured = ours(**port, request);
+    const auto second = bare(near, request);
+    ratios[0].push_back(measured.median / first.median);
+    ratios[1].push_back(measured.p99 / first.p99);
+    ratios[2].push_back(second.median / first.median);
+    ratios[3].push_back(second.p99 / first.p99);
+  }
+  fmt::print("{}: ours to bare {:.2f} at 50 %, {:.2f} at 99 %; bare to bare {:.2f}, {:.2f}\n", name,
+             middle(ratios[0]), middle(ratios[1]), middle(ratios[2]), middle(ratios[3]));
+  port->reset();  // the echo ends
+  other.join();
+  return middle(ratios[0]) <= 1.1 && middle(ratios[1]) <= 1.2;
+}
+
+}  // namespace
+}  // namespace armjig
+
+int main() {
+  const bool is_terminal_met = armjig::compare("PTY", armjig::make_terminal(), armjig::write_all);
+  const bool is_tcp_met = armjig::compare("TCP", armjig::make_tcp(), armjig::send_all);
+  return is_terminal_met && is_tcp_met ? 0 : 1;
+}
