@@ -185,7 +185,7 @@ Outcome<SerialAddress> parse_serial_address(std::string_view text, SerialLine us
   if (comma != std::string_view::npos) {
     const auto baud = whole_text_as<int>(text.substr(comma + 1));
     if (baud && *baud > 0)
-      address.line.baud = *baud;
+      address.line.baud = static_cast<std::uint32_t>(*baud);
     else
       address.path.clear();
   }
