@@ -4,10 +4,12 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 
+#include "cli/checks.hpp"
 #include "cli/device.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/report/output_file.hpp"
@@ -70,9 +72,10 @@ void add_trace_random(CLI::App& trace, Devices devices, Action& action) {
   auto* random = trace.add_subcommand("random", with_example(kHelp, devices));
   const auto options = std::make_shared<Options>();
   add_device_argument(*random, options->device, devices);
-  random->add_option("--seed", options->seed, "of the first session; 1 if not given");
+  random->add_option("--seed", options->seed, "of the first session; 1 if not given")
+      ->transform(whole(0, std::numeric_limits<std::uint64_t>::max()));
   random->add_option("--count", options->count, "how many; the seeds follow each other")
-      ->check(CLI::Range(std::uint64_t{1}, kMostSessions));
+      ->transform(whole(1, kMostSessions));
   random->add_option("--out", options->folder, "the folder they go to")->required();
   random->callback([options, devices, &action] {
     action = [options, devices] { return write_sessions(*options, devices); };
