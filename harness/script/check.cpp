@@ -204,6 +204,43 @@ std::vector<Diagnostic> check(const Program& program, const Schedule& schedule) 
   return found;
 }
 
+namespace {
+
+using parol6::planning::Move;
+
+/// A move that ends where it says, wherever it begins.
+bool has_an_end_of_its_own(const Statement& statement) {
+  const auto* const move = std::get_if<Move>(&statement.command);
+  return move != nullptr && (move->kind == Move::Kind::kJoint || move->kind == Move::Kind::kPose);
+}
+
+/// Each costs the planning of all that comes before it.
+constexpr std::size_t kMostFurtherErrors = 19;
+
+/// What stands in the way of further moves of a program that could not be planned: `wrong` and what
+/// would begin where that ends is left out, as often as there is something.
+std::vector<Diagnostic> further_errors(Program program, Diagnostic wrong,
+                                       const InterpreterSettings& settings,
+                                       const parol6::JointSteps& from) {
+  std::vector<Diagnostic> errors;
+  auto& statements = program.statements;
+  while (errors.size() < kMostFurtherErrors) {
+    const auto first = std::ranges::find(statements, wrong.place, &Statement::place);
+    if (first == statements.end() || !std::holds_alternative<Move>(first->command)) return errors;
+    const auto last = std::find_if(first + 1, statements.end(), has_an_end_of_its_own);
+    const auto moves = std::remove_if(first, last, [](const Statement& each) {
+      return std::holds_alternative<Move>(each.command);
+    });
+    statements.erase(moves, last);
+    const auto planned = schedule(program, settings, from);
+    if (planned) return errors;
+    errors.push_back(wrong = planned.error());
+  }
+  return errors;
+}
+
+}  // namespace
+
 Inspection inspect(const Program& program, const InterpreterSettings& settings,
                    const parol6::JointSteps& from) {
   Inspection result{.schedule = {}, .found = check(program)};
@@ -212,6 +249,8 @@ Inspection inspect(const Program& program, const InterpreterSettings& settings,
   auto planned = schedule(program, settings, from);
   if (!planned) {
     result.found.push_back(planned.error());
+    std::ranges::copy(further_errors(program, planned.error(), settings, from),
+                      std::back_inserter(result.found));
     return result;
   }
   std::ranges::copy(check(program, *planned), std::back_inserter(result.found));

@@ -15,6 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::SizeIs;
 
 std::vector<std::string> said(std::string_view lines, Dialect dialect = Dialect::kDocumented) {
   std::vector<std::string> texts;
@@ -93,6 +94,20 @@ TEST(Check, WarnsOfWhatTheCommanderDoesNotLookAt) {
               ElementsAre(HasSubstr("the joints are there already")));
   EXPECT_THAT(commander_says("MoveJoint(0,-90,180,0,0,180,t=0.6)"),
               ElementsAre(HasSubstr("it can do 6500")));
+}
+
+TEST(Check, SaysOfEachMoveThatItCannotBePlannedUnlessItBeginsWhereSuchAOneEnds) {
+  EXPECT_THAT(commander_says("MoveJoint(900,-90,180,0,0,180,t=4)\n"
+                             "MoveCart(250,0,330,90,0,90,t=4)\n"
+                             "MoveJoint(80,-90,180,0,0,180,t=4)\n"
+                             "MoveJoint(80,-90,900,0,0,180,t=4)"),
+              ElementsAre(HasSubstr("j1"), HasSubstr("j3")));
+}
+
+TEST(Check, SaysOfTwentyMovesThatTheyCannotBePlannedAndLeavesItAtThat) {
+  std::string text;
+  for (int i = 0; i < 30; ++i) text += "MoveJoint(900,-90,180,0,0,180,t=4)\n";
+  EXPECT_THAT(commander_says(text), SizeIs(20));
 }
 
 TEST(Check, SaysAllErrorsAtOnceAndWarningsBesideThem) {
