@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
+#include "harness/core/time.hpp"
+
 /// What the values of options have to be, in one place for all subcommands. CLI11's own ranges take
 /// `nan`, wrap negative numbers and read 010 as eight.
 namespace armjig::cli {
@@ -13,6 +15,11 @@ namespace armjig::cli {
 
 /// A finite number.
 [[nodiscard]] CLI::Validator number(double least, double most);
+
+/// What a number of seconds means; it reaches 292 years.
+[[nodiscard]] inline Duration duration_of(double seconds) {
+  return std::chrono::round<Duration>(std::chrono::duration<double>{seconds});
+}
 
 /// Lets no option of the command and its subcommands take an empty text, which is what a variable
 /// of a shell that was never set leaves there. Words of another program are its own.

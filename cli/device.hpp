@@ -20,6 +20,7 @@
 #include "emulators/memory/serial_line.hpp"
 #include "emulators/replay/replay.hpp"
 #include "emulators/sessions/sessions.hpp"
+#include "harness/config/option_file.hpp"
 #include "harness/console/device_console.hpp"
 #include "harness/console/watched.hpp"
 #include "harness/core/error.hpp"
@@ -95,6 +96,19 @@ template <class Kind>
     if (hosted && kind.line) return put_on_line(*std::move(hosted), rate_of(*kind.line));
   }
   return hosted;
+}
+
+/// What an entry says of its emulated device (`OnPort::emulate`), if there is a function that makes
+/// it of options and `where`: `make(options, where)`, or, where options name files, `make(options,
+/// where, files)`.
+template <auto make>
+[[nodiscard]] auto hosted(const DeviceOptions& options, const std::string& where) {
+  const auto host = [](auto device) { return make_hosted(std::move(device)); };
+  if constexpr (std::is_invocable_v<decltype(make), decltype(options), decltype(where)>) {
+    return make(options, where).map(host);
+  } else {
+    return make(options, where, option_files()).map(host);
+  }
 }
 
 /// The parts that an entry must have and lacks, by their names; nothing if it is complete.

@@ -210,9 +210,7 @@ Exit emulate(Devices devices, const Options& options) {
     if (!made) return report(made.error());
     check = *std::move(made);
   }
-  const auto claimed = claim_standard_output(options.wants_json ? "--json" : "");
-  if (!claimed) return report(claimed.error());
-  const auto files = ReportOutputs::open(options.files);
+  const auto files = ReportOutputs::open(options.files, options.wants_json ? "--json" : "");
   if (!files) return report(files.error());
   const auto served = std::visit(
       [&](const auto& kind) -> Outcome<void> {

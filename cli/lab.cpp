@@ -91,9 +91,7 @@ Exit exec(Devices devices, const Options& options) {
     if (!made) return report(made.error());
     check = *std::move(made);
   }
-  const auto claimed = claim_standard_output("PROGRAM");
-  if (!claimed) return report(claimed.error());
-  const auto files = ReportOutputs::open(options.files);
+  const auto files = ReportOutputs::open(options.files, "PROGRAM");
   if (!files) return report(files.error());
   auto hosted = *std::move(bus);
   if (check) hosted = check->watch(std::move(hosted));

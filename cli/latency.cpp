@@ -67,10 +67,6 @@ constexpr double kUsualSeconds = 10;
 constexpr Duration kSlice = 1s;  ///< of two targets that are alternated
 constexpr std::uint64_t kMostSlices = 1'000'000;
 
-Duration duration_of(double seconds) {
-  return std::chrono::round<Duration>(std::chrono::duration<double>{seconds});
-}
-
 /// What was asked for, read.
 struct Wanted {
   MeterPlan plan;

@@ -21,7 +21,10 @@ std::vector<CLI::Option*> add_report_files(CLI::App& command, ReportFiles& files
   return added;
 }
 
-Outcome<ReportOutputs> ReportOutputs::open(const ReportFiles& files) {
+Outcome<ReportOutputs> ReportOutputs::open(const ReportFiles& files, std::string_view claimed) {
+  if (const auto done = claim_standard_output(claimed); !done) {
+    return tl::unexpected{done.error()};
+  }
   ReportOutputs outputs;
   for (const auto& form : report_forms()) {
     const auto path = files.find(form.name);

@@ -18,8 +18,10 @@ std::vector<CLI::Option*> add_report_files(CLI::App& command, ReportFiles& files
 /// The files of a report, opened before the run that it is about.
 class ReportOutputs {
  public:
-  /// Problems: as for `open_output`.
-  [[nodiscard]] static Outcome<ReportOutputs> open(const ReportFiles& files);
+  /// `claimed` is the option that has standard output for itself, if there is one. Problems: as for
+  /// `open_output`.
+  [[nodiscard]] static Outcome<ReportOutputs> open(const ReportFiles& files,
+                                                   std::string_view claimed = {});
 
   /// What cannot be written is said at the end of the program.
   void put(const Report& report) const;

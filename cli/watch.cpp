@@ -137,10 +137,6 @@ Form form_of(const Options& options) {
   return has_screen() ? Form::kScreen : Form::kLines;
 }
 
-Duration duration_of(double seconds) {
-  return std::chrono::round<Duration>(std::chrono::duration<double>{seconds});
-}
-
 Watch::Plan plan_of(const Options& options, Duration period) {
   Watch::Plan plan{.period = period, .count = options.count};
   if (options.seconds) plan.time = duration_of(*options.seconds);

@@ -11,13 +11,6 @@
 namespace armjig::demo {
 namespace {
 
-Outcome<std::unique_ptr<HostedStream>> emulate(const DeviceOptions& options,
-                                               const std::string& where) {
-  return emulation::make(options, where).map([](auto machine) {
-    return make_hosted(std::move(machine));
-  });
-}
-
 Outcome<std::unique_ptr<DeviceConsole>> open_console(Rig<StreamPort> rig, const std::string& target,
                                                      Say say) {
   return generic::open(StreamLink{std::move(rig)}, make_dissector(), target, std::move(say));
@@ -42,7 +35,7 @@ cli::Device device() {
           .title = "the worked example, a device that nobody built",
           .make_dissector = make_dissector,
           .port = cli::OnStream{{.make_judge = rig::make_judge,
-                                 .emulate = emulate,
+                                 .emulate = cli::hosted<emulation::make>,
                                  .make_bench = conformance::make_bench,
                                  .open_console = open_console,
                                  .watch = watch,

@@ -6,30 +6,19 @@
 #include "emulators/kinovazed/options.hpp"
 #include "emulators/replay/kinovazed_matrix.hpp"
 #include "emulators/replay/kinovazed_rules.hpp"
-#include "harness/config/option_file.hpp"
 #include "harness/console/kinovazed/console.hpp"
 #include "harness/latency/kinovazed_probe.hpp"
 #include "harness/rig/kinovazed_judge.hpp"
 #include "harness/wire/kinovazed/dissector.hpp"
 
 namespace armjig::kinovazed {
-namespace {
-
-Outcome<std::unique_ptr<HostedServer>> emulate(const DeviceOptions& options,
-                                               const std::string& where) {
-  return emulation::make(options, where, option_files()).map([](auto server) {
-    return make_hosted(std::move(server));
-  });
-}
-
-}  // namespace
 
 cli::Device device() {
   return {.name = "kinovazed",
           .title = "KinovaZED server",
           .make_dissector = make_dissector,
           .port = cli::OnServer{{.make_judge = rig::make_judge,
-                                 .emulate = emulate,
+                                 .emulate = cli::hosted<emulation::make>,
                                  .make_bench = conformance::make_bench,
                                  .open_console = console::open,
                                  .watch = console::watch,

@@ -5,30 +5,19 @@
 #include "conformance/morap/host/check.hpp"
 #include "conformance/morap/suite.hpp"
 #include "emulators/morap/options.hpp"
-#include "harness/config/option_file.hpp"
 #include "harness/console/morap/console.hpp"
 #include "harness/latency/morap_probe.hpp"
 #include "harness/rig/morap_judge.hpp"
 #include "harness/wire/morap/dissector.hpp"
 
 namespace armjig::morap {
-namespace {
-
-Outcome<std::unique_ptr<HostedBus>> emulate(const DeviceOptions& options,
-                                            const std::string& where) {
-  return emulation::make(options, where, option_files()).map([](auto bus) {
-    return make_hosted(std::move(bus));
-  });
-}
-
-}  // namespace
 
 cli::Device device() {
   return {.name = "morap",
           .title = "MORAP motor nodes",
           .make_dissector = make_dissector,
           .port = cli::OnBus{{.make_judge = rig::make_judge,
-                              .emulate = emulate,
+                              .emulate = cli::hosted<emulation::make>,
                               .make_bench = conformance::make_bench,
                               .open_console = console::open,
                               .watch = console::watch,

@@ -11,21 +11,13 @@
 #include "harness/wire/parol6/dissector.hpp"
 
 namespace armjig::parol6 {
-namespace {
-
-Outcome<std::unique_ptr<HostedStream>> emulate(const DeviceOptions& options,
-                                               const std::string& where) {
-  return emulation::make(options, where).map([](auto arm) { return make_hosted(std::move(arm)); });
-}
-
-}  // namespace
 
 cli::Device device() {
   return {.name = "parol6",
           .title = "PAROL6 control board",
           .make_dissector = make_dissector,
           .port = cli::OnStream{{.make_judge = rig::make_judge,
-                                 .emulate = emulate,
+                                 .emulate = cli::hosted<emulation::make>,
                                  .make_bench = conformance::make_bench,
                                  .open_console = console::open,
                                  .watch = console::watch,

@@ -60,7 +60,7 @@ struct Options {
 Outcome<StepTest> test_of(const Options& options) {
   StepTest test;
   test.reference = static_cast<float>(options.step);
-  test.length = std::chrono::round<Duration>(std::chrono::duration<double>{options.seconds});
+  test.length = duration_of(options.seconds);
   test.node.eeprom = eeprom_of(options.motor);
   auto& motor = test.node.eeprom.motor;
   if (options.current > 0) motor.rated_current = static_cast<float>(options.current);

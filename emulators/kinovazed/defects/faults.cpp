@@ -205,17 +205,22 @@ constexpr std::array kForms{
     Named<Add>{"quirk", add_quirk},
 };
 
+/// Where a verb leads in the states that accept it.
+std::string_view elsewhere(std::size_t verb) {
+  const auto& rows = shipped_machine().commands;
+  const auto row =
+      std::ranges::find_if(rows, [&](const auto& one) { return one[verb].has_value(); });
+  return to_string(*(*row)[verb]);
+}
+
 /// Every cell of the table, wrong: what is accepted is refused, and what is refused leads to where
 /// the verb leads elsewhere.
 void list_rows(std::vector<NamedFault>& all) {
-  constexpr std::array<std::string_view, kAnsweredVerbs> kElsewhere{
-      "emergencyStopped", "poweredOff", "initializing", "unfolding", "retracting",
-      "frozen",           "idle",       "settingMode",  "steering",  "runningSequence"};
   for (std::size_t s = 0; s < kStateNames.size(); ++s) {
     for (std::size_t v = 0; v < kAnsweredVerbs; ++v) {
       const auto is_accepted = shipped_machine().commands[s][v].has_value();
       all.push_back({fmt::format("row:{}.{}.{}", kStateNames[s], kVerbNames[v],
-                                 is_accepted ? "rejected" : kElsewhere[v]),
+                                 is_accepted ? "rejected" : elsewhere(v)),
                      "States"});
     }
   }
