@@ -32,8 +32,6 @@ using Defects = std::set<std::string, std::less<>>;
 /// CRC. A write of several registers takes effect as a whole.
 class Gripper {
  public:
-  static constexpr unsigned kWidest = 1000;
-  static constexpr unsigned kModelNumber = 0x4752;
   static constexpr armjig::Duration kReplyDelay = std::chrono::milliseconds{1};
 
   explicit Gripper(Defects defects = {}) : defects_{std::move(defects)} {}

@@ -46,6 +46,8 @@ enum Register : std::uint16_t {
   kModel,
   kRegisters
 };
+constexpr unsigned kWidest = 1000;         ///< the jaws, open
+constexpr unsigned kModelNumber = 0x4752;  ///< what `kModel` is
 enum class Status : std::uint16_t { kStopped, kMoving, kArrived, kHolding };
 
 [[nodiscard]] std::uint16_t crc16(armjig::Bytes bytes) noexcept;

@@ -49,7 +49,7 @@ class GripperBench final : public StreamBench {
       touch("jam", 0);
     }
     if (start == kStopped) stop();
-    if (start == kOpen) move_to(Gripper::kWidest, kFastest);
+    if (start == kOpen) move_to(kWidest, kFastest);
     if (start == kOpen) expect_end(Status::kArrived);
   }
   void measure_noise() override {
@@ -187,7 +187,7 @@ const auto kOtherModel = read_request(kNeighbour, kModel, 1);
 // The documents: see rtu.hpp. What they leave to the device is "own".
 constexpr Clause kFraming[] = {
     must("gripper.crc.order", "A reply ends with its CRC, the low byte first.", "[S] 2.5.1.2"),
-    look([](GripperBench& bench) { bench.expect_register(kModel, Gripper::kModelNumber); }),
+    look([](GripperBench& bench) { bench.expect_register(kModel, kModelNumber); }),
 
     must("gripper.crc.checked", "A request with a wrong CRC is neither answered nor obeyed.",
          "[S] 2.6.2"),
@@ -242,7 +242,7 @@ constexpr Clause kFraming[] = {
     look([](GripperBench& bench) {
       bench.ask({kReadModel.begin(), kReadModel.end() - 1});
       bench.expect_silence();
-      bench.expect_register(kModel, Gripper::kModelNumber);
+      bench.expect_register(kModel, kModelNumber);
     }),
 };
 
@@ -292,10 +292,10 @@ constexpr Clause kFunctions[] = {
     must("gripper.read.all", "All registers of the gripper can be read at once.", "own"),
     from(kOpen, kGrip,
          [](GripperBench& bench) {
-           bench.expect_block({1, 1000, kFastest, kWeak, 2, 1000, 0, Gripper::kModelNumber});
+           bench.expect_block({1, 1000, kFastest, kWeak, 2, 1000, 0, kModelNumber});
            bench.ask(write_many_request(kUnit, kControl, {0, 900, 40, 2}));
            bench.expect({16, 0, kControl, 0, 4});
-           bench.expect_block({0, 900, 40, 2, 0, 1000, 0, Gripper::kModelNumber});
+           bench.expect_block({0, 900, 40, 2, 0, 1000, 0, kModelNumber});
          }),
 
     must("gripper.write.stored",
@@ -324,7 +324,7 @@ constexpr Clause kFunctions[] = {
 
     must("gripper.reply.once", "A unit speaks when it is asked, and once.", "[S] 2.1"),
     look([](GripperBench& bench) {
-      for (int i = 0; i < 12; ++i) bench.expect_register(kModel, Gripper::kModelNumber);
+      for (int i = 0; i < 12; ++i) bench.expect_register(kModel, kModelNumber);
       bench.expect_silence();
     }),
 };
@@ -414,7 +414,7 @@ constexpr Clause kMotion[] = {
     must("gripper.move.speed", "They go as fast as they are told.", "own"),
     from(kOpen, kGrip,
          [](GripperBench& bench) {
-           bench.move_to(0, Gripper::kWidest / 2);
+           bench.move_to(0, kWidest / 2);
            const auto took = bench.expect_end(Status::kArrived);
            if (took < 1500ms || took > 3s) bench.fail("2 s", std::to_string(took / 1ms) + " ms");
          }),
@@ -422,7 +422,7 @@ constexpr Clause kMotion[] = {
     must("gripper.move.stop", "They stop where they are when told to.", "own"),
     from(kOpen, kGrip,
          [](GripperBench& bench) {
-           bench.move_to(0, Gripper::kWidest / 5);
+           bench.move_to(0, kWidest / 5);
            bench.expect_status(Status::kMoving);
            bench.stop();
            bench.expect_status(Status::kStopped);
@@ -436,7 +436,7 @@ constexpr Clause kMotion[] = {
            bench.put("object", 250);
            bench.move_to(0, kFastest);
            bench.expect_end(Status::kHolding);
-           bench.expect_block({1, 0, kFastest, kWeak, 3, 250, kWeak, Gripper::kModelNumber});
+           bench.expect_block({1, 0, kFastest, kWeak, 3, 250, kWeak, kModelNumber});
          }),
 };
 
