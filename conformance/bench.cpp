@@ -18,6 +18,10 @@ void Bench::fail(std::string expected, std::string actual) {
   decide({Verdict::kFail, std::move(expected), std::move(actual)});
 }
 
+void Bench::fail_at(std::size_t byte, std::string expected, std::string actual) {
+  decide({Verdict::kFail, std::move(expected), std::move(actual), false, byte});
+}
+
 void Bench::fail_by_silence(std::string expected, std::string actual) {
   decide({Verdict::kFail, std::move(expected), std::move(actual), true});
 }

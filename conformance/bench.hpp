@@ -23,6 +23,9 @@ struct Judgement {
   std::string expected{};
   std::string actual{};
   bool is_silence = false;  ///< nothing was wrong but that an ordinary answer did not come
+  /// Where in the device's message it was seen, in bytes from its beginning; none if `actual` names
+  /// a field, or is about something else.
+  std::optional<std::size_t> byte{};
 };
 
 /// What a case works on: a conversation with one device, on whatever link that has. Each suite has
@@ -70,6 +73,8 @@ class Bench {
   [[nodiscard]] std::uint32_t random() { return static_cast<std::uint32_t>(random_()); }
 
   void fail(std::string expected, std::string actual);
+  /// The same for that byte of the device's newest message.
+  void fail_at(std::size_t byte, std::string expected, std::string actual);
   void fail_by_silence(std::string expected, std::string actual);
   void skip(std::string reason);
   void leave_open(std::string reason);  ///< inconclusive

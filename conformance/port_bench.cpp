@@ -11,16 +11,18 @@
 namespace armjig {
 namespace {
 
-/// The field of the message that the judgement got; none if it is about something else.
-const Field* field_judged(const Message& message, const Judgement& judgement) {
-  const auto is_it = [&](const Field& field) {
-    return judgement.actual == sentence_of(field, field_value(field, message.raw));
-  };
-  const auto field = std::ranges::find_if(message.fields, is_it);
-  return field == message.fields.end() ? nullptr : &*field;
+/// Whether the byte is one of the field's.
+bool covers(const Field& field, Bytes message, std::size_t byte) {
+  if (field.place == Place::kBytes) return byte - field.offset < field.width;
+  const auto before = message.first(std::min(byte, message.size()));
+  return std::ranges::count(before, std::byte{':'}) == field.offset;
 }
 
-/// `> speed.j1 = 720896 steps/s = 0x0B0000 (bytes 22 to 24: 0B 00 00)`.
+bool is_judged(const Field& field, Bytes message, const Judgement& judgement) {
+  if (judgement.byte) return covers(field, message, *judgement.byte);
+  return judgement.actual == sentence_of(field, field_value(field, message));
+}
+
 std::string marked(const Field& field, const Message& message) {
   const auto sentence = sentence_of(field, field_value(field, message.raw));
   if (field.place == Place::kPiece) return fmt::format("> {}\n", sentence);
@@ -37,17 +39,24 @@ std::string sentence_of(const Field& field, std::int64_t value) {
   return fmt::format("{} = {}", field.name, text_in_both(field, value));
 }
 
+std::string mark_of(const Message& message, const Judgement& judgement) {
+  if (message.direction != Direction::kFromDevice) return {};
+  const auto field = std::ranges::find_if(
+      message.fields, [&](const Field& each) { return is_judged(each, message.raw, judgement); });
+  return field == message.fields.end() ? std::string{} : marked(*field, message);
+}
+
 std::string evidence_of(const std::deque<Message>& messages, const Judgement& judgement) {
   const Message* judged = nullptr;
   for (const auto& message : messages) {
-    if (field_judged(message, judgement) != nullptr) judged = &message;
+    if (!mark_of(message, judgement).empty()) judged = &message;
   }
   std::string text;
   for (const auto& message : messages) {
     text += fmt::format("{:.3f} ms {}\n", static_cast<double>(microseconds(message.time)) / 1000.0,
                         to_line(message));
     if (message.fault.empty()) text += fmt::format("  {}\n", to_short_dump(message.raw));
-    if (&message == judged) text += marked(*field_judged(message, judgement), message);
+    if (&message == judged) text += mark_of(message, judgement);
   }
   return text;
 }

@@ -17,11 +17,14 @@
 
 namespace armjig {
 
-/// Messages as evidence: a line for each with its time, and its first bytes. The field that a
-/// judgement is about, one that got `NAME = VALUE`, has a line of its own below the newest message
-/// with that value.
+/// Messages as evidence: a line for each with its time, and its first bytes. Below the newest one
+/// that has a mark is its mark.
 [[nodiscard]] std::string evidence_of(const std::deque<Message>& messages,
                                       const Judgement& judgement);
+
+/// A line with the field of the device's message that a judgement is about: `> speed.j1 = 99
+/// steps/s = 0x000063 (bytes 22 to 24: 00 00 63)`. Empty if it is about no field of this message.
+[[nodiscard]] std::string mark_of(const Message& message, const Judgement& judgement);
 
 /// A field's value as judgements say it: `speed.j1 = 99 steps/s = 0x000063`.
 [[nodiscard]] std::string sentence_of(const Field& field, std::int64_t value);

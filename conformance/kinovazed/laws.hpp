@@ -3,14 +3,19 @@
 
 #include <optional>
 
+#include "harness/core/time.hpp"
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/kinovazed/state.hpp"
 
 /// What the judges of servers and of their clients hold to be right, read from
-/// docs/spec/kinovazed.md
-/// ("States", "Interrupts and ends", "Heartbeats"). The emulator has all of it too, written for
-/// itself; nothing is shared, and a test compares the two.
+/// docs/spec/kinovazed.md ("States", "Interrupts and ends", "Heartbeats", "Times"). The emulator
+/// has all of it too, written for itself; nothing is shared, and a test compares the two.
 namespace armjig::kinovazed::conformance {
+
+/// Two modes that are nearer to each other hang a shipped server ("Times").
+inline constexpr Duration kModePause = std::chrono::milliseconds{500};
+/// From one heartbeat to the next.
+inline constexpr Duration kBeatPeriod = std::chrono::seconds{1};
 
 /// Where a command leads if it is accepted. Requires `is_answered(verb)`, here and below.
 [[nodiscard]] State leads_to(Verb verb) noexcept;

@@ -8,6 +8,9 @@
 #include <span>
 #include <utility>
 
+#include "conformance/kinovazed/laws.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
+
 namespace armjig::kinovazed::conformance {
 namespace {
 
@@ -33,6 +36,13 @@ std::string printable(std::string_view text) {
     shown += byte >= 0x20 && byte < 0x7F ? std::string{c} : fmt::format("\\x{:02X}", byte);
   }
   return text.size() > 60 ? fmt::format("{}... ({} bytes)", shown, text.size()) : shown;
+}
+
+/// The mark of a line of the server.
+std::string mark_of(std::string_view line, const Judgement& judgement) {
+  std::vector<Message> messages;
+  make_dissector()->feed(Direction::kFromDevice, {}, std::as_bytes(std::span{line}), messages);
+  return messages.empty() ? std::string{} : armjig::mark_of(messages.front(), judgement);
 }
 
 bool is_event_free(std::string_view command) {
@@ -71,15 +81,27 @@ Duration ServerBench::silence_time() const { return std::max<Duration>(250ms, 5 
 void ServerBench::forget_exchange() { exchange_.clear(); }
 
 std::string ServerBench::last_exchange() const {
+  const auto judged = std::ranges::find(exchange_.rbegin(), exchange_.rend(),
+                                        judgement().actual + "\r\n", &Passed::raw);
   std::string text;
-  for (const auto& line : exchange_) text += line;
+  for (const auto& each : exchange_) {
+    text += each.line;
+    if (judged != exchange_.rend() && &each == &*judged) text += mark_of(each.raw, judgement());
+  }
   return text;
 }
 
 void ServerBench::remember(std::string_view arrow, std::string_view text) {
-  exchange_.push_back(fmt::format("{:.3f} ms {} {} {}\n", milliseconds(now().time_since_epoch()),
-                                  current_, arrow, printable(text)));
+  exchange_.push_back({fmt::format("{:.3f} ms {} {} {}\n", milliseconds(now().time_since_epoch()),
+                                   current_, arrow, printable(text)),
+                       std::string{text}});
   if (exchange_.size() > kRemembered) exchange_.pop_front();
+}
+
+void ServerBench::fail_by(std::string_view wanted, const Heard& heard) {
+  const auto text = heard.text();
+  const auto differs = std::ranges::mismatch(wanted, text).in2 - text.begin();
+  fail_at(static_cast<std::size_t>(differs), behind(wanted), std::string{text});
 }
 
 std::string ServerBench::silence_of(Duration time) {
@@ -136,7 +158,7 @@ void ServerBench::throw_away() {
 
 void ServerBench::expect_end() {
   const auto word = next_word(answer_time());
-  if (word) return fail(behind("the end of the connection"), std::string{word->text()});
+  if (word) return fail_by("the end of the connection", *word);
   if (!is_deaf() && !client().has_ended) {
     fail(behind("the end of the connection"), silence_of(answer_time()));
   }
@@ -144,7 +166,7 @@ void ServerBench::expect_end() {
 
 void ServerBench::expect_quiet(Duration time) {
   const auto word = next_word(time);
-  if (word) return fail(behind("nothing but beats"), std::string{word->text()});
+  if (word) return fail_by("nothing but beats", *word);
   if (!is_deaf() && client().has_ended) {
     fail(behind("an open connection"), "the end of the connection");
   }
@@ -154,7 +176,7 @@ void ServerBench::expect_no_message(Duration time) {
   client().beats.clear();
   expect_quiet(time);
   if (client().beats.empty()) return;
-  fail(behind("no message at all"), std::string{client().beats.front().text()});
+  fail_by("no message at all", client().beats.front());
 }
 
 // Lines.
@@ -234,14 +256,14 @@ Heard ServerBench::expect(Event wanted, Duration within) {
     return {now()};
   }
   if (!word->is(wanted)) {
-    fail(behind(to_string(wanted)), std::string{word->text()});
+    fail_by(to_string(wanted), *word);
   }
   return *word;
 }
 
 void ServerBench::expect_silence() {
   const auto word = next_word(silence_time());
-  if (word) fail(behind("no answer"), std::string{word->text()});
+  if (word) fail_by("no answer", *word);
 }
 
 void ServerBench::refuse(std::string_view command) {
@@ -270,7 +292,7 @@ Heard ServerBench::perform(std::string_view command, Event event, Duration withi
   }
   if (first->is(Event::kAccepted)) return expect(event, within);
   if (!first->is(event)) {
-    fail(behind(to_string(event)), std::string{first->text()});
+    fail_by(to_string(event), *first);
   }
   is_documented() ? pass_over_accepted() : void(expect(Event::kAccepted));
   return *first;
@@ -329,7 +351,7 @@ void ServerBench::expect_beat(int flags) {
   const auto wanted = fmt::format("Heartbeat:{}", flags);
   const auto beat = next_beat(now() + kBeatIsOld, kBeatTime + kBeatIsOld + noise());
   if (!beat) return fail_by_silence(behind(wanted), silence_of(kBeatTime));
-  if (beat->raw != wanted + "\r\n") fail(behind(wanted), std::string{beat->text()});
+  if (beat->raw != wanted + "\r\n") fail_by(wanted, *beat);
 }
 
 std::size_t ServerBench::count_beats(Duration time) {
@@ -340,7 +362,7 @@ std::size_t ServerBench::count_beats(Duration time) {
 
 void ServerBench::wait_until_before_beat(Duration time) {
   (void)await_beat();
-  pause(1s - time);
+  pause(kBeatPeriod - time);
 }
 
 // The server and its machine.

@@ -102,6 +102,9 @@ class ServerBench final : public PortBench<SessionSource> {
   /// The server still answers, and has nothing else to say.
   void expect_probe();
 
+  /// A finding: what was heard is not what was wanted. Its first character that differs is marked.
+  void fail_by(std::string_view wanted, const Heard& heard);
+
   // Beats.
   /// The next beat, or what time it is if none comes.
   Heard await_beat();
@@ -150,6 +153,12 @@ class ServerBench final : public PortBench<SessionSource> {
     std::optional<Instant> last_beat{};
   };
 
+  /// Something that was said or done on a connection.
+  struct Passed {
+    std::string line;  ///< for people
+    std::string raw;   ///< what was said
+  };
+
   [[nodiscard]] Client& client();
   [[nodiscard]] SessionPort& session() { return *client().port; }
   [[nodiscard]] bool connect_again(Duration patience);
@@ -167,7 +176,7 @@ class ServerBench final : public PortBench<SessionSource> {
 
   std::vector<Client> clients_;
   std::size_t current_ = 0;
-  std::deque<std::string> exchange_;
+  std::deque<Passed> exchange_;
   std::optional<Instant> mode_said_;
   Start start_ = kStopped;
   bool is_spoiled_ = false;

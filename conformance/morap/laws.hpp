@@ -43,7 +43,7 @@ class MotorLaw {
   double counts_per_turn_;  ///< of the motor
 };
 
-/// A feedback loop that begins anew where the shaft stands.
+/// A feedback loop that begins again where the shaft stands.
 class LoopLaw {
  public:
   LoopLaw(const Motor& motor, const ControllerSet& set, double angle, double reference);

@@ -20,6 +20,8 @@ using enum CommandId;
 
 /// Behind a tick; no transaction is as short.
 constexpr Duration kMargin = 20us;
+/// Messages begin with the byte of the address.
+constexpr std::size_t kAddressSize = 1;
 
 std::vector<std::byte> bytes_of(std::string_view hex) { return *from_hex(hex); }
 
@@ -88,34 +90,43 @@ void NodeBench::expect_same(Bytes actual, Bytes wanted) {
   fail(behind(to_hex_dump(wanted)), to_hex_dump(actual));
 }
 
+/// What was just read.
+void NodeBench::expect_read(Bytes actual, Bytes wanted) {
+  if (std::ranges::equal(actual, wanted)) return;
+  const auto differs = std::ranges::mismatch(actual, wanted).in1 - actual.begin();
+  fail_at(kAddressSize + static_cast<std::size_t>(differs), behind(to_hex_dump(wanted)),
+          to_hex_dump(actual));
+}
+
 void NodeBench::expect_bytes(CommandId selector, std::string_view hex) {
   const auto wanted = bytes_of(hex);
-  expect_same(read(selector, wanted.size()), wanted);
+  expect_read(read(selector, wanted.size()), wanted);
 }
 
 void NodeBench::expect_read_on(std::string_view hex) {
   const auto wanted = bytes_of(hex);
-  expect_same(read_on(wanted.size()), wanted);
+  expect_read(read_on(wanted.size()), wanted);
 }
 
 void NodeBench::expect_number(CommandId selector, float wanted) {
   const auto actual = read(selector, 4);
   if (std::ranges::equal(actual, bytes_of(wanted))) return;
-  fail(behind(fmt::format("{} {}", name_of_selector(selector), wanted)),
-       fmt::format("{}", decode_float(slice<4>(Bytes{actual}, 0))));
+  fail_at(kAddressSize, behind(fmt::format("{} {}", name_of_selector(selector), wanted)),
+          fmt::format("{}", decode_float(slice<4>(Bytes{actual}, 0))));
 }
 
 void NodeBench::expect_near(CommandId selector, double wanted, double tolerance) {
   const auto actual = static_cast<double>(number(selector));
   if (std::fabs(actual - wanted) <= tolerance) return;
-  fail(behind(fmt::format("{} {} within {}", name_of_selector(selector), wanted, tolerance)),
-       fmt::format("{}", actual));
+  fail_at(kAddressSize,
+          behind(fmt::format("{} {} within {}", name_of_selector(selector), wanted, tolerance)),
+          fmt::format("{}", actual));
 }
 
 void NodeBench::expect_state(CommandId selector, std::string_view name, int wanted) {
   const auto actual = std::to_integer<int>(read(selector, 1)[0]);
   if (actual == wanted) return;
-  fail(behind(fmt::format("{} {}", name, wanted)), fmt::format("{}", actual));
+  fail_at(kAddressSize, behind(fmt::format("{} {}", name, wanted)), fmt::format("{}", actual));
 }
 
 void NodeBench::expect_status(MotorStatus wanted) {
@@ -151,7 +162,7 @@ void NodeBench::wait_for_tick() {
 }
 
 void NodeBench::expect_read_levels(int levels) {
-  expect_same(read_on(4), bytes_of(static_cast<float>(levels) * kVoltsPerLevel));
+  expect_read(read_on(4), bytes_of(static_cast<float>(levels) * kVoltsPerLevel));
 }
 
 void NodeBench::expect_levels_at_ticks(std::span<const int> levels) {

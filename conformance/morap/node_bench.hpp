@@ -99,6 +99,7 @@ class NodeBench final : public BusBench {
   void needs_emulation() { touch("adc", 0); }
 
  private:
+  void expect_read(Bytes actual, Bytes wanted);
   void expect_state(CommandId selector, std::string_view name, int wanted);
   void find_node();
   void find_motor();

@@ -183,6 +183,11 @@ def rows(folder):
          ["expected     speed.j1", "FF FF FF 38", f"--target '{faulty}' --filter",
           "> speed.j1 = 6488064 steps/s = 0x630000 (bytes 22 to 24: 63 00 00)", "... 44 more",
           "\nFAIL      parol6.receive.store-stays           expected speed.j1 = 99 steps/s = 0x000063"]),
+        ("conformance kinovazed --target emulated:?fault=bit-high:4 --filter kinovazed.beat.values",
+         "", 1, ["< Heartbeat:19", "> state = isIdle hasEmergencyStop isConnected (0x13)"]),
+        ("conformance morap --target emulated:?fault=in:doubled:program.d.0 "
+         "--filter morap.program.position", "", 1,
+         ["\n            > d.0 = 1.7014118e+38 = 0x7F000000 (bytes 5 to 8: 00 00 00 7F)"]),
         ("conformance demo --target emulated: --color always", "", 0,
          ["\x1b[32mPASS     \x1b[0m demo.query", "\x1b[32m3 passed\x1b[0m"]),
         ("conformance demo --target emulated:", "", 0, ["PASS      demo.query", "\n3 passed, 0 failed"]),

@@ -23,7 +23,6 @@ constexpr Duration kAnswer = 500ms;
 constexpr Duration kSilence = 3s;
 /// In which a program has to see what a heartbeat shows.
 constexpr Duration kReaction = 100ms;
-constexpr Duration kModePause = 500ms;
 constexpr Duration kLongestObjective = 60s;
 constexpr Duration kMovesWindow = 1s;
 /// Moves in such a window at 17 in a second, with one at each end.

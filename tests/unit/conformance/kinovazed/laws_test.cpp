@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "emulators/kinovazed/behaviour.hpp"
 #include "emulators/kinovazed/machine.hpp"
 #include "harness/drive/kinovazed/drive.hpp"
 
@@ -78,6 +79,13 @@ TEST(KinovaLaws, ReadEveryHeartbeatAsTheEmulatorFlagsItsStates) {
     const auto beyond = beat_of(state).flags & ~(beat::kConnected | beat::kInitialized);
     EXPECT_EQ(beyond, shipped_machine().flag(state)) << to_string(state);
     EXPECT_NE(beat_of(state).flags & beat::kConnected, 0) << to_string(state);
+  }
+}
+
+TEST(KinovaLaws, HaveTheTimesOfTheEmulator) {
+  for (const auto& behaviour : {emulation::kFirmwareBehaviour, emulation::kDocumentedBehaviour}) {
+    EXPECT_EQ(kModePause, behaviour.mode_settles);
+    EXPECT_EQ(kBeatPeriod, behaviour.beat_period);
   }
 }
 
