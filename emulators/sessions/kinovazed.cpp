@@ -16,16 +16,12 @@
 namespace armjig::kinovazed::sessions {
 namespace {
 
-using armjig::sessions::Dice;
-using armjig::sessions::Words;
+using namespace armjig::sessions;
 using emulation::kArmCallNames;
 
-constexpr std::int64_t kUsPerMs = 1000;
-
-class Session {
+class Session : public Draft {
  public:
-  Session(Dice& dice, std::string_view theme, std::uint64_t seed)
-      : dice_{dice}, theme_{theme}, seed_{seed} {
+  explicit Session(const Start& start) : Draft{start, TimeUnit::kMillisecond} {
     arm_ = describe_arm();
     if (is_missing_) rest();
     connect();
@@ -35,21 +31,17 @@ class Session {
       wait(3'000);
       connect();
     }
-    if (theme == "framing" || theme == "faults") return;
+    if (theme_ == "framing" || theme_ == "faults") return;
     if (!dice_.one_in(6)) make_ready();
   }
-
-  [[nodiscard]] std::int64_t now_us() const noexcept { return now_ms_ * kUsPerMs; }
 
   [[nodiscard]] std::string finish() {
     wait(dice_.between(100, 3'000));
     touch({R"("event":"clear_failures")"});  // until here time passes
-    script_.set_header(fmt::format(
-        R"({{"format":"golden-trace/1","device":"kinovazed","source":"drawn at random",)"
-        R"("title":"random {0}","category":"{0}","seed":{1},"listening_since_ms":{2},)"
-        R"("arm":{3},"server_after":"running","final_state":"emergencyStopped"}})",
-        theme_, seed_, is_missing_ ? "null" : "0", arm_));
-    return script_.text();
+    return text("kinovazed",
+                fmt::format(R"("category":"{}","seed":{},"listening_since_ms":{},"arm":{},)"
+                            R"("server_after":"running","final_state":"emergencyStopped")",
+                            theme_, seed_, is_missing_ ? "null" : "0", arm_));
   }
 
   // Commands.
@@ -91,7 +83,7 @@ class Session {
         *axis = dice_.one_in(3) ? 0 : dice_.number<std::int32_t>(-400, 400);
       }
       if (dice_.one_in(8)) {
-        move.deflection.x = static_cast<std::int32_t>(armjig::sessions::odd_number(dice_));
+        move.deflection.x = static_cast<std::int32_t>(odd_number(dice_));
       }
       say(encode(move).view());
       pause();
@@ -117,11 +109,9 @@ class Session {
     std::string line{kVerbNames[static_cast<std::size_t>(verb)]};
     for (auto left = dice_.between(0, 4); left > 0; --left) {
       line += ':';
-      line +=
-          dice_.one_in(3) ? std::string{dice_.one_of(kModeNames)}
-          : dice_.one_in(3)
-              ? std::string{dice_.one_of(kObjectiveNames)}
-              : Words{"{}{}", dice_.one_in(6) ? " " : "", armjig::sessions::odd_number(dice_)}.text;
+      line += dice_.one_in(3)   ? std::string{dice_.one_of(kModeNames)}
+              : dice_.one_in(3) ? std::string{dice_.one_of(kObjectiveNames)}
+                                : Words{"{}{}", dice_.one_in(6) ? " " : "", odd_number(dice_)}.text;
     }
     say(line + "\r\n");
     pause();
@@ -205,8 +195,8 @@ class Session {
 
   void rest() { wait(dice_.mostly_low(1, 6'000)); }
   void meet_beat() {
-    const auto beat = now_ms_ / 1'000 * 1'000 + 1'000 + dice_.between(-3, 8);
-    now_ms_ = std::max(now_ms_, beat);
+    const auto beat = now_ / 1'000 * 1'000 + 1'000 + dice_.between(-3, 8);
+    now_ = std::max(now_, beat);
   }
 
  private:
@@ -259,97 +249,83 @@ class Session {
   }
   void touch(const Words& what) { add({R"("dir":"arm",{})", what.text}); }
 
-  void add(const Words& what) {
-    script_.add(fmt::format(R"({{"t_ms":{},{}}})", now_ms_, what.text));
-  }
-  void wait(std::int64_t ms) { now_ms_ += ms; }
   void pause() {
     if (dice_.one_in(6)) return;
     wait(dice_.one_in(3) ? dice_.between(1, 30) : dice_.mostly_low(20, 1'500));
   }
 
-  Dice& dice_;
-  std::string_view theme_;
-  std::uint64_t seed_;
-  armjig::sessions::Script script_;
   std::string arm_;
   bool is_missing_ = false;
   std::vector<std::uint32_t> open_;
   std::uint32_t next_ = 1;
-  std::int64_t now_ms_ = 0;
 };
 
-using Deed = armjig::sessions::Deed<Session>;
-using Theme = armjig::sessions::Theme<Session>;
-
-constexpr auto kCommands = std::to_array<Deed>({{10, &Session::order},
-                                                {4, &Session::make_ready},
-                                                {4, &Session::stop},
-                                                {5, &Session::freeze},
-                                                {6, &Session::fold},
-                                                {6, &Session::choose_mode},
-                                                {6, &Session::steer},
-                                                {6, &Session::run},
-                                                {2, &Session::odd_line},
-                                                {1, &Session::several},
-                                                {1, &Session::disconnect},
-                                                {3, &Session::rest},
-                                                {4, &Session::meet_beat}});
-constexpr auto kSteering = std::to_array<Deed>({{8, &Session::choose_mode},
-                                                {12, &Session::steer},
-                                                {2, &Session::odd_arguments},
-                                                {2, &Session::freeze},
-                                                {1, &Session::stop},
-                                                {1, &Session::order},
-                                                {2, &Session::rest}});
-constexpr auto kObjectives = std::to_array<Deed>({{12, &Session::run},
-                                                  {2, &Session::freeze},
-                                                  {1, &Session::stop},
-                                                  {1, &Session::order},
-                                                  {2, &Session::make_ready},
-                                                  {3, &Session::rest}});
-constexpr auto kFraming = std::to_array<Deed>({{6, &Session::odd_line},
-                                               {6, &Session::odd_arguments},
-                                               {4, &Session::garbage},
-                                               {2, &Session::endless_line},
-                                               {5, &Session::several},
-                                               {5, &Session::in_pieces},
-                                               {3, &Session::order},
-                                               {2, &Session::disconnect}});
-constexpr auto kConnections = std::to_array<Deed>({{8, &Session::disconnect},
-                                                   {4, &Session::connect},
-                                                   {6, &Session::order},
-                                                   {3, &Session::in_pieces},
-                                                   {2, &Session::several},
-                                                   {2, &Session::make_ready},
-                                                   {2, &Session::run},
-                                                   {1, &Session::terminate},
-                                                   {3, &Session::rest},
-                                                   {2, &Session::meet_beat}});
-constexpr auto kFaults = std::to_array<Deed>({{10, &Session::fail},
-                                              {4, &Session::unplug},
-                                              {4, &Session::surge},
-                                              {3, &Session::move_arm},
-                                              {6, &Session::make_ready},
-                                              {6, &Session::order},
-                                              {3, &Session::fold},
-                                              {3, &Session::choose_mode},
-                                              {3, &Session::steer},
-                                              {3, &Session::run},
-                                              {2, &Session::rest}});
+constexpr auto kCommands = std::to_array<Deed<Session>>({{10, &Session::order},
+                                                         {4, &Session::make_ready},
+                                                         {4, &Session::stop},
+                                                         {5, &Session::freeze},
+                                                         {6, &Session::fold},
+                                                         {6, &Session::choose_mode},
+                                                         {6, &Session::steer},
+                                                         {6, &Session::run},
+                                                         {2, &Session::odd_line},
+                                                         {1, &Session::several},
+                                                         {1, &Session::disconnect},
+                                                         {3, &Session::rest},
+                                                         {4, &Session::meet_beat}});
+constexpr auto kSteering = std::to_array<Deed<Session>>({{8, &Session::choose_mode},
+                                                         {12, &Session::steer},
+                                                         {2, &Session::odd_arguments},
+                                                         {2, &Session::freeze},
+                                                         {1, &Session::stop},
+                                                         {1, &Session::order},
+                                                         {2, &Session::rest}});
+constexpr auto kObjectives = std::to_array<Deed<Session>>({{12, &Session::run},
+                                                           {2, &Session::freeze},
+                                                           {1, &Session::stop},
+                                                           {1, &Session::order},
+                                                           {2, &Session::make_ready},
+                                                           {3, &Session::rest}});
+constexpr auto kFraming = std::to_array<Deed<Session>>({{6, &Session::odd_line},
+                                                        {6, &Session::odd_arguments},
+                                                        {4, &Session::garbage},
+                                                        {2, &Session::endless_line},
+                                                        {5, &Session::several},
+                                                        {5, &Session::in_pieces},
+                                                        {3, &Session::order},
+                                                        {2, &Session::disconnect}});
+constexpr auto kConnections = std::to_array<Deed<Session>>({{8, &Session::disconnect},
+                                                            {4, &Session::connect},
+                                                            {6, &Session::order},
+                                                            {3, &Session::in_pieces},
+                                                            {2, &Session::several},
+                                                            {2, &Session::make_ready},
+                                                            {2, &Session::run},
+                                                            {1, &Session::terminate},
+                                                            {3, &Session::rest},
+                                                            {2, &Session::meet_beat}});
+constexpr auto kFaults = std::to_array<Deed<Session>>({{10, &Session::fail},
+                                                       {4, &Session::unplug},
+                                                       {4, &Session::surge},
+                                                       {3, &Session::move_arm},
+                                                       {6, &Session::make_ready},
+                                                       {6, &Session::order},
+                                                       {3, &Session::fold},
+                                                       {3, &Session::choose_mode},
+                                                       {3, &Session::steer},
+                                                       {3, &Session::run},
+                                                       {2, &Session::rest}});
 
 constexpr auto kThemes =
-    std::to_array<Theme>({{"commands", 10, 2'000'000, 60'000'000, kCommands},
-                          {"steering", 5, 2'000'000, 40'000'000, kSteering},
-                          {"objectives", 4, 5'000'000, 80'000'000, kObjectives},
-                          {"framing", 6, 500'000, 10'000'000, kFraming},
-                          {"connections", 6, 1'000'000, 30'000'000, kConnections},
-                          {"faults", 8, 2'000'000, 40'000'000, kFaults}});
+    std::to_array<Theme<Session>>({{"commands", 10, 2'000'000, 60'000'000, kCommands},
+                                   {"steering", 5, 2'000'000, 40'000'000, kSteering},
+                                   {"objectives", 4, 5'000'000, 80'000'000, kObjectives},
+                                   {"framing", 6, 500'000, 10'000'000, kFraming},
+                                   {"connections", 6, 1'000'000, 30'000'000, kConnections},
+                                   {"faults", 8, 2'000'000, 40'000'000, kFaults}});
 
 }  // namespace
 
-std::string draw(std::uint64_t seed) {
-  return armjig::sessions::play(seed, std::span<const Theme>{kThemes});
-}
+std::string draw(std::uint64_t seed) { return play<Session>(seed, kThemes); }
 
 }  // namespace armjig::kinovazed::sessions

@@ -18,8 +18,7 @@
 namespace armjig::morap::sessions {
 namespace {
 
-using armjig::sessions::Dice;
-using armjig::sessions::Words;
+using namespace armjig::sessions;
 
 /// Ticks of rates that nodes begin with or are often told, in cycles.
 constexpr std::array kTickCycles{80'008, 80'008, 40'001, 25'601, 32'001};
@@ -36,30 +35,27 @@ constexpr std::array kMotors{
     Motor{emulation::dcx26l, R"("R":1.07,"L":0.000129,"K":0.0214,"n":149.0,"eta":0.75,)"
                              R"("counts_per_rad":12141.612298594511)"}};
 
-class Session {
+class Session : public Draft {
  public:
-  Session(Dice& dice, std::string_view theme, std::uint64_t seed)
-      : dice_{dice}, theme_{theme}, seed_{seed} {
-    const bool is_bus = theme == "bus" || theme == "pen";
-    has_plant_ = theme == "loop" || (theme == "bus" && dice_.one_in(2));
-    has_pen_ = theme == "pen" || (is_bus && dice_.one_in(2));
-    const auto count = theme == "bus" ? dice_.between(2, 4) : 1;
-    std::string nodes;
+  explicit Session(const Start& start) : Draft{start} {
+    has_plant_ = theme_ == "loop" || (theme_ == "bus" && dice_.one_in(2));
+    has_pen_ = theme_ == "pen" || (is_bus_ && dice_.one_in(2));
+    const auto count = theme_ == "bus" ? dice_.between(2, 4) : 1;
     for (std::int64_t i = 0; i < count; ++i) {
       const auto node = static_cast<std::uint8_t>(4 * i + dice_.between(0, i == 2 ? 0 : 3));
-      if (!nodes.empty()) nodes += ',';
-      nodes += "{" + describe(node) + "}";
+      if (!nodes_.empty()) nodes_ += "},{";
+      nodes_ += describe(node);
       addresses_.push_back(node_address(node));
-      if (!is_bus) header_ = describe_device("morap-node", nodes.substr(1, nodes.size() - 2));
     }
-    if (has_pen_) nodes += R"(,{"kind":"pen","address":25})";
-    if (is_bus) header_ = describe_device("morap-bus", fmt::format(R"("nodes":[{}])", nodes));
+    if (has_pen_) nodes_ += R"(},{"kind":"pen","address":25)";
   }
 
-  [[nodiscard]] std::int64_t now_us() const noexcept { return now_us_; }
   [[nodiscard]] std::string finish() {
-    script_.set_header(header_);
-    return script_.text();
+    return text(is_bus_ ? "morap-bus" : "morap-node",
+                fmt::format(R"("family":"{}","seed":{},)"
+                            R"("bus":{{"start_us":10,"byte_us":90,"stop_us":10}},{})",
+                            has_plant_ ? "closed-loop" : "static", seed_,
+                            is_bus_ ? R"("nodes":[{)" + nodes_ + "}]" : nodes_));
   }
 
   // Commands.
@@ -98,7 +94,7 @@ class Session {
         break;
       }
       default:
-        armjig::sessions::spoil_a_field(dice_, program_fields(set), bytes);
+        spoil_a_field(dice_, program_fields(set), bytes);
         bytes.back() = std::byte{checksum(Bytes{bytes}.subspan(2, bytes.size() - 3))};
     }
     write(Bytes{bytes}.subspan(1));
@@ -183,8 +179,8 @@ class Session {
   void rest() { wait(dice_.mostly_low(1, 60'000)); }
   void meet_tick() {
     const std::int64_t period = dice_.one_of(kTickCycles);
-    const auto next = (now_us_ * kCyclesPerUs / period + dice_.between(1, 3)) * period;
-    now_us_ = std::max(now_us_, next / kCyclesPerUs + dice_.between(-800, 20));
+    const auto next = (now_ * kCyclesPerUs / period + dice_.between(1, 3)) * period;
+    now_ = std::max(now_, next / kCyclesPerUs + dice_.between(-800, 20));
   }
 
  private:
@@ -214,12 +210,6 @@ class Session {
     }
     return fmt::format(R"("node_id":{},"address":{},"eeprom":{{"words_le_hex":"{}"}},"plant":{})",
                        node, node_address(node), to_hex(emulation::encode(eeprom)), plant);
-  }
-  [[nodiscard]] std::string describe_device(std::string_view device, std::string_view parts) const {
-    return fmt::format(R"({{"format":"golden-trace/1","device":"{}","source":"drawn at random",)"
-                       R"("title":"random {}","family":"{}","seed":{},)"
-                       R"("bus":{{"start_us":10,"byte_us":90,"stop_us":10}},{}}})",
-                       device, theme_, has_plant_ ? "closed-loop" : "static", seed_, parts);
   }
 
   [[nodiscard]] float some_float() {
@@ -306,95 +296,81 @@ class Session {
     add({R"("op":"state","addr":25,"servo_deg":0,"led1":0,"led2":0,"serial":"")"});
   }
 
-  void add(const Words& what) {
-    script_.add(fmt::format(R"({{"t_us":{},{}}})", now_us_, what.text));
-  }
-  void wait(std::int64_t us) { now_us_ += us; }
-
-  Dice& dice_;
-  std::string_view theme_;
-  std::uint64_t seed_;
-  armjig::sessions::Script script_;
-  std::string header_;
+  bool is_bus_ = theme_ == "bus" || theme_ == "pen";
+  std::string nodes_;  ///< of the header
   std::vector<std::uint8_t> addresses_;
   bool has_plant_ = false;
   bool has_pen_ = false;
-  std::int64_t now_us_ = 0;
 };
 
-using Deed = armjig::sessions::Deed<Session>;
-using Theme = armjig::sessions::Theme<Session>;
+constexpr auto kAll = std::to_array<Deed<Session>>({{10, &Session::order},
+                                                    {14, &Session::refer},
+                                                    {5, &Session::calibrate},
+                                                    {8, &Session::program},
+                                                    {5, &Session::program_badly},
+                                                    {2, &Session::defaults},
+                                                    {5, &Session::tune},
+                                                    {3, &Session::odd_write},
+                                                    {3, &Session::cut_write},
+                                                    {3, &Session::long_write},
+                                                    {16, &Session::ask},
+                                                    {8, &Session::ask_outcome},
+                                                    {2, &Session::ask_again},
+                                                    {2, &Session::stranger},
+                                                    {3, &Session::turn_shaft},
+                                                    {2, &Session::load_motor},
+                                                    {1, &Session::restart},
+                                                    {6, &Session::rest},
+                                                    {6, &Session::meet_tick}});
+constexpr auto kLoop = std::to_array<Deed<Session>>({{14, &Session::refer},
+                                                     {6, &Session::calibrate},
+                                                     {3, &Session::program},
+                                                     {1, &Session::program_badly},
+                                                     {2, &Session::defaults},
+                                                     {5, &Session::tune},
+                                                     {20, &Session::ask},
+                                                     {2, &Session::order},
+                                                     {1, &Session::restart},
+                                                     {12, &Session::rest},
+                                                     {4, &Session::meet_tick}});
+constexpr auto kRace = std::to_array<Deed<Session>>({{10, &Session::program},
+                                                     {10, &Session::program_badly},
+                                                     {4, &Session::defaults},
+                                                     {8, &Session::tune},
+                                                     {4, &Session::cut_write},
+                                                     {6, &Session::refer},
+                                                     {3, &Session::calibrate},
+                                                     {12, &Session::ask},
+                                                     {8, &Session::ask_outcome},
+                                                     {14, &Session::meet_tick}});
+constexpr auto kPen = std::to_array<Deed<Session>>({{10, &Session::move_pen},
+                                                    {10, &Session::press_button},
+                                                    {3, &Session::refer},
+                                                    {3, &Session::ask},
+                                                    {2, &Session::stranger},
+                                                    {4, &Session::rest}});
+constexpr auto kBus = std::to_array<Deed<Session>>({{10, &Session::order},
+                                                    {10, &Session::refer},
+                                                    {5, &Session::calibrate},
+                                                    {4, &Session::program},
+                                                    {2, &Session::tune},
+                                                    {20, &Session::ask},
+                                                    {2, &Session::cut_write},
+                                                    {6, &Session::stranger},
+                                                    {5, &Session::move_pen},
+                                                    {3, &Session::press_button},
+                                                    {1, &Session::restart},
+                                                    {6, &Session::rest}});
 
-constexpr auto kAll = std::to_array<Deed>({{10, &Session::order},
-                                           {14, &Session::refer},
-                                           {5, &Session::calibrate},
-                                           {8, &Session::program},
-                                           {5, &Session::program_badly},
-                                           {2, &Session::defaults},
-                                           {5, &Session::tune},
-                                           {3, &Session::odd_write},
-                                           {3, &Session::cut_write},
-                                           {3, &Session::long_write},
-                                           {16, &Session::ask},
-                                           {8, &Session::ask_outcome},
-                                           {2, &Session::ask_again},
-                                           {2, &Session::stranger},
-                                           {3, &Session::turn_shaft},
-                                           {2, &Session::load_motor},
-                                           {1, &Session::restart},
-                                           {6, &Session::rest},
-                                           {6, &Session::meet_tick}});
-constexpr auto kLoop = std::to_array<Deed>({{14, &Session::refer},
-                                            {6, &Session::calibrate},
-                                            {3, &Session::program},
-                                            {1, &Session::program_badly},
-                                            {2, &Session::defaults},
-                                            {5, &Session::tune},
-                                            {20, &Session::ask},
-                                            {2, &Session::order},
-                                            {1, &Session::restart},
-                                            {12, &Session::rest},
-                                            {4, &Session::meet_tick}});
-constexpr auto kRace = std::to_array<Deed>({{10, &Session::program},
-                                            {10, &Session::program_badly},
-                                            {4, &Session::defaults},
-                                            {8, &Session::tune},
-                                            {4, &Session::cut_write},
-                                            {6, &Session::refer},
-                                            {3, &Session::calibrate},
-                                            {12, &Session::ask},
-                                            {8, &Session::ask_outcome},
-                                            {14, &Session::meet_tick}});
-constexpr auto kPen = std::to_array<Deed>({{10, &Session::move_pen},
-                                           {10, &Session::press_button},
-                                           {3, &Session::refer},
-                                           {3, &Session::ask},
-                                           {2, &Session::stranger},
-                                           {4, &Session::rest}});
-constexpr auto kBus = std::to_array<Deed>({{10, &Session::order},
-                                           {10, &Session::refer},
-                                           {5, &Session::calibrate},
-                                           {4, &Session::program},
-                                           {2, &Session::tune},
-                                           {20, &Session::ask},
-                                           {2, &Session::cut_write},
-                                           {6, &Session::stranger},
-                                           {5, &Session::move_pen},
-                                           {3, &Session::press_button},
-                                           {1, &Session::restart},
-                                           {6, &Session::rest}});
-
-constexpr auto kThemes = std::to_array<Theme>({{"static", 8, 5'000, 2'500'000, kAll},
-                                               {"weird", 5, 5'000, 2'000'000, kAll},
-                                               {"race", 8, 5'000, 1'500'000, kRace},
-                                               {"loop", 8, 50'000, 4'000'000, kLoop},
-                                               {"bus", 6, 50'000, 2'500'000, kBus},
-                                               {"pen", 3, 50'000, 3'000'000, kPen}});
+constexpr auto kThemes = std::to_array<Theme<Session>>({{"static", 8, 5'000, 2'500'000, kAll},
+                                                        {"weird", 5, 5'000, 2'000'000, kAll},
+                                                        {"race", 8, 5'000, 1'500'000, kRace},
+                                                        {"loop", 8, 50'000, 4'000'000, kLoop},
+                                                        {"bus", 6, 50'000, 2'500'000, kBus},
+                                                        {"pen", 3, 50'000, 3'000'000, kPen}});
 
 }  // namespace
 
-std::string draw(std::uint64_t seed) {
-  return armjig::sessions::play(seed, std::span<const Theme>{kThemes});
-}
+std::string draw(std::uint64_t seed) { return play<Session>(seed, kThemes); }
 
 }  // namespace armjig::morap::sessions

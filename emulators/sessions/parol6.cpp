@@ -16,8 +16,7 @@
 namespace armjig::parol6::sessions {
 namespace {
 
-using armjig::sessions::Dice;
-using armjig::sessions::Words;
+using namespace armjig::sessions;
 using emulation::CanFrame;
 using emulation::GripperCan;
 
@@ -39,19 +38,11 @@ constexpr auto kPassPeriods = std::to_array<PassPeriod>({{30, 20},
                                                          {2, 2661},
                                                          {2, 20'000}});
 
-class Session {
+class Session : public Draft {
  public:
-  Session(Dice& dice, std::string_view theme, std::uint64_t seed)
-      : dice_{dice}, theme_{theme}, seed_{seed} {
-    period_us_ = dice_.weighted(kPassPeriods, &PassPeriod::weight).us;
-  }
+  using Draft::Draft;
 
-  [[nodiscard]] std::int64_t now_us() const noexcept { return now_us_; }
-
-  [[nodiscard]] std::string finish() {
-    script_.set_header(header());
-    return script_.text();
-  }
+  [[nodiscard]] std::string finish() { return text("parol6", circumstances()); }
 
   // Frames.
   void jog() {
@@ -105,7 +96,7 @@ class Session {
   void odd_frame() {
     auto bytes = encode(idle_frame());
     for (auto left = dice_.between(1, 4); left > 0; --left) {
-      armjig::sessions::spoil_a_field(dice_, command_fields(), bytes);
+      spoil_a_field(dice_, command_fields(), bytes);
     }
     put(bytes);
     pause();
@@ -120,9 +111,9 @@ class Session {
   void home_on() {  // to the end if nothing comes between
     home();
     last_ = encode(dice_.one_in(6) ? CommandFrame{.command = Command::kHome} : idle_frame());
-    const auto end = now_us_ + dice_.mostly_low(100'000, 40'000'000);
+    const auto end = now_ + dice_.mostly_low(100'000, 40'000'000);
     const auto gap = dice_.between(10'000, 90'000);
-    while (now_us_ < end) {
+    while (now_ < end) {
       put(last_);
       wait(gap);
     }
@@ -166,7 +157,7 @@ class Session {
     for (auto left = dice_.between(2, 24); left > 0; --left) {
       auto frame = encode(idle_frame());
       frame[kHeaderSize + 36] = static_cast<std::byte>(dice_.one_of(kCodes));
-      if (dice_.one_in(3)) armjig::sessions::spoil_a_field(dice_, command_fields(), frame);
+      if (dice_.one_in(3)) spoil_a_field(dice_, command_fields(), frame);
       all.insert(all.end(), frame.begin(), frame.end());
       if (!dice_.one_in(6)) continue;
       const auto noise = dice_.bytes(1, 9);
@@ -183,15 +174,12 @@ class Session {
     if (dice_.one_in(4)) frame.id |= emulation::kCanErrorBit;
     if (dice_.one_in(5)) frame.id = dice_.number<std::uint16_t>(0, 0x7FF);
     if (dice_.one_in(5)) frame.size = dice_.number<std::uint8_t>(0, 8);
-    script_.add(fmt::format(R"({{"t_us":{},"dir":"can_to_device","id":{},"hex":"{}"}})", now_us_,
-                            frame.id, to_hex(frame.payload())));
+    add({R"("dir":"can_to_device","id":{},"hex":"{}")", frame.id, to_hex(frame.payload())});
     pause();
   }
   void input() {
     constexpr std::array<std::string_view, 3> kNames{"estop", "in1", "in2"};
-    script_.add(Words{R"({{"t_us":{},"dir":"input","name":"{}","value":{}}})", now_us_,
-                      dice_.one_of(kNames), dice_.between(0, 1)}
-                    .text);
+    add({R"("dir":"input","name":"{}","value":{})", dice_.one_of(kNames), dice_.between(0, 1)});
     pause();
   }
   void rest() { wait(dice_.mostly_low(1, 3'000'000)); }
@@ -248,18 +236,14 @@ class Session {
       if (!bytes.empty()) wait(gap);
     }
   }
-  void add_bytes(Bytes bytes) {
-    script_.add(
-        fmt::format(R"({{"t_us":{},"dir":"to_device","hex":"{}"}})", now_us_, to_hex(bytes)));
-  }
+  void add_bytes(Bytes bytes) { add({R"("dir":"to_device","hex":"{}")", to_hex(bytes)}); }
 
-  void wait(std::int64_t us) { now_us_ += us; }
   void pause() {
     switch (dice_.between(0, 7)) {
       case 0:  // nothing between
         return;
       case 1:  // at a pass, or just beside it
-        now_us_ += std::int64_t{period_us_} - now_us_ % period_us_;
+        now_ += std::int64_t{period_us_} - now_ % period_us_;
         return wait(dice_.between(0, 2));
       case 2:
         return wait(dice_.between(1, std::int64_t{period_us_} * 3));
@@ -270,7 +254,7 @@ class Session {
     }
   }
 
-  [[nodiscard]] std::string header() {
+  [[nodiscard]] std::string circumstances() {
     const auto clock = dice_.between(0, 5);
     const auto micros = clock == 0   ? dice_.between(0, UINT32_MAX)
                         : clock == 1 ? UINT32_MAX - dice_.between(0, 3'000'000)
@@ -278,11 +262,10 @@ class Session {
                                      : 740'000;
     const auto bits = dice_.one_in(2) ? 16 : 32;
     const auto timer = dice_.one_in(2) ? 0 : dice_.between(0, (INT64_C(1) << bits) - 1);
-    const auto end = now_us_ + dice_.between(1, 300'000);
+    const auto end = now_ + dice_.between(1, 300'000);
     return fmt::format(
-        R"({{"format":"golden-trace/1","device":"parol6","source":"drawn at random",)"
-        R"("title":"random {0}","category":"{0}","seed":{1},"loop_us":{2},"duration_us":{3},)"
-        R"("micros_at_t0":{4},"tim2_bits":{5},"tim2_at_t0":{6},"can_recorded":true,"plant":{7}}})",
+        R"("category":"{}","seed":{},"loop_us":{},"duration_us":{},"micros_at_t0":{},)"
+        R"("tim2_bits":{},"tim2_at_t0":{},"can_recorded":true,"plant":{})",
         theme_, seed_, period_us_, end, micros, bits, timer, plant());
   }
 
@@ -305,101 +288,92 @@ class Session {
         .text;
   }
 
-  Dice& dice_;
-  std::string_view theme_;
-  std::uint64_t seed_;
-  armjig::sessions::Script script_;
-  std::uint32_t period_us_{};
-  std::int64_t now_us_ = 0;
+  std::uint32_t period_us_ = dice_.weighted(kPassPeriods, &PassPeriod::weight).us;
   std::array<std::int32_t, kJointCount> goals_{};
   GripperSetPoint gripper_{};
   CommandBytes last_ = encode(CommandFrame{.command = Command::kIdle});
 };
 
-using Deed = armjig::sessions::Deed<Session>;
-using Theme = armjig::sessions::Theme<Session>;
+constexpr auto kMotion = std::to_array<Deed<Session>>({{20, &Session::jog},
+                                                       {10, &Session::go_to},
+                                                       {10, &Session::approach},
+                                                       {6, &Session::idle},
+                                                       {4, &Session::stop},
+                                                       {6, &Session::again},
+                                                       {2, &Session::disable},
+                                                       {3, &Session::enable},
+                                                       {2, &Session::clear},
+                                                       {2, &Session::unknown},
+                                                       {1, &Session::home},
+                                                       {1, &Session::demo},
+                                                       {3, &Session::input},
+                                                       {2, &Session::odd_frame},
+                                                       {4, &Session::rest}});
+constexpr auto kGoTo = std::to_array<Deed<Session>>({{6, &Session::go_to},
+                                                     {20, &Session::approach},
+                                                     {10, &Session::again},
+                                                     {1, &Session::jog},
+                                                     {1, &Session::idle},
+                                                     {4, &Session::rest}});
+constexpr auto kHoming = std::to_array<Deed<Session>>({{10, &Session::home_on},
+                                                       {2, &Session::home},
+                                                       {3, &Session::jog},
+                                                       {3, &Session::go_to},
+                                                       {4, &Session::idle},
+                                                       {2, &Session::disable},
+                                                       {3, &Session::enable},
+                                                       {2, &Session::clear},
+                                                       {1, &Session::unknown},
+                                                       {1, &Session::demo},
+                                                       {2, &Session::input},
+                                                       {3, &Session::rest}});
+constexpr auto kDemo = std::to_array<Deed<Session>>({{12, &Session::demo},
+                                                     {6, &Session::again},
+                                                     {4, &Session::approach},
+                                                     {3, &Session::go_to},
+                                                     {2, &Session::idle},
+                                                     {1, &Session::jog},
+                                                     {1, &Session::home},
+                                                     {10, &Session::rest}});
+constexpr auto kGripper = std::to_array<Deed<Session>>({{12, &Session::grip},
+                                                        {14, &Session::answer_can},
+                                                        {3, &Session::input},
+                                                        {2, &Session::idle},
+                                                        {2, &Session::enable},
+                                                        {3, &Session::again},
+                                                        {1, &Session::odd_frame},
+                                                        {1, &Session::rest}});
+constexpr auto kFraming = std::to_array<Deed<Session>>({{6, &Session::idle},
+                                                        {6, &Session::garbage},
+                                                        {6, &Session::cut_frame},
+                                                        {6, &Session::wrong_length},
+                                                        {4, &Session::wrong_end},
+                                                        {4, &Session::odd_frame},
+                                                        {4, &Session::burst},
+                                                        {2, &Session::unknown},
+                                                        {1, &Session::rest}});
+constexpr auto kStorm = std::to_array<Deed<Session>>({{10, &Session::burst},
+                                                      {3, &Session::input},
+                                                      {3, &Session::answer_can},
+                                                      {2, &Session::garbage},
+                                                      {2, &Session::grip},
+                                                      {2, &Session::home},
+                                                      {2, &Session::jog},
+                                                      {2, &Session::odd_frame},
+                                                      {1, &Session::wrong_length},
+                                                      {1, &Session::rest}});
 
-constexpr auto kMotion = std::to_array<Deed>({{20, &Session::jog},
-                                              {10, &Session::go_to},
-                                              {10, &Session::approach},
-                                              {6, &Session::idle},
-                                              {4, &Session::stop},
-                                              {6, &Session::again},
-                                              {2, &Session::disable},
-                                              {3, &Session::enable},
-                                              {2, &Session::clear},
-                                              {2, &Session::unknown},
-                                              {1, &Session::home},
-                                              {1, &Session::demo},
-                                              {3, &Session::input},
-                                              {2, &Session::odd_frame},
-                                              {4, &Session::rest}});
-constexpr auto kGoTo = std::to_array<Deed>({{6, &Session::go_to},
-                                            {20, &Session::approach},
-                                            {10, &Session::again},
-                                            {1, &Session::jog},
-                                            {1, &Session::idle},
-                                            {4, &Session::rest}});
-constexpr auto kHoming = std::to_array<Deed>({{10, &Session::home_on},
-                                              {2, &Session::home},
-                                              {3, &Session::jog},
-                                              {3, &Session::go_to},
-                                              {4, &Session::idle},
-                                              {2, &Session::disable},
-                                              {3, &Session::enable},
-                                              {2, &Session::clear},
-                                              {1, &Session::unknown},
-                                              {1, &Session::demo},
-                                              {2, &Session::input},
-                                              {3, &Session::rest}});
-constexpr auto kDemo = std::to_array<Deed>({{12, &Session::demo},
-                                            {6, &Session::again},
-                                            {4, &Session::approach},
-                                            {3, &Session::go_to},
-                                            {2, &Session::idle},
-                                            {1, &Session::jog},
-                                            {1, &Session::home},
-                                            {10, &Session::rest}});
-constexpr auto kGripper = std::to_array<Deed>({{12, &Session::grip},
-                                               {14, &Session::answer_can},
-                                               {3, &Session::input},
-                                               {2, &Session::idle},
-                                               {2, &Session::enable},
-                                               {3, &Session::again},
-                                               {1, &Session::odd_frame},
-                                               {1, &Session::rest}});
-constexpr auto kFraming = std::to_array<Deed>({{6, &Session::idle},
-                                               {6, &Session::garbage},
-                                               {6, &Session::cut_frame},
-                                               {6, &Session::wrong_length},
-                                               {4, &Session::wrong_end},
-                                               {4, &Session::odd_frame},
-                                               {4, &Session::burst},
-                                               {2, &Session::unknown},
-                                               {1, &Session::rest}});
-constexpr auto kStorm = std::to_array<Deed>({{10, &Session::burst},
-                                             {3, &Session::input},
-                                             {3, &Session::answer_can},
-                                             {2, &Session::garbage},
-                                             {2, &Session::grip},
-                                             {2, &Session::home},
-                                             {2, &Session::jog},
-                                             {2, &Session::odd_frame},
-                                             {1, &Session::wrong_length},
-                                             {1, &Session::rest}});
-
-constexpr auto kThemes = std::to_array<Theme>({{"motion", 10, 500'000, 30'000'000, kMotion},
-                                               {"goto", 6, 500'000, 15'000'000, kGoTo},
-                                               {"homing", 10, 2'000'000, 60'000'000, kHoming},
-                                               {"demo", 5, 1'000'000, 50'000'000, kDemo},
-                                               {"gripper", 5, 100'000, 2'000'000, kGripper},
-                                               {"framing", 6, 20'000, 3'000'000, kFraming},
-                                               {"storm", 4, 50'000, 3'000'000, kStorm}});
+constexpr auto kThemes =
+    std::to_array<Theme<Session>>({{"motion", 10, 500'000, 30'000'000, kMotion},
+                                   {"goto", 6, 500'000, 15'000'000, kGoTo},
+                                   {"homing", 10, 2'000'000, 60'000'000, kHoming},
+                                   {"demo", 5, 1'000'000, 50'000'000, kDemo},
+                                   {"gripper", 5, 100'000, 2'000'000, kGripper},
+                                   {"framing", 6, 20'000, 3'000'000, kFraming},
+                                   {"storm", 4, 50'000, 3'000'000, kStorm}});
 
 }  // namespace
 
-std::string draw(std::uint64_t seed) {
-  return armjig::sessions::play(seed, std::span<const Theme>{kThemes});
-}
+std::string draw(std::uint64_t seed) { return play<Session>(seed, kThemes); }
 
 }  // namespace armjig::parol6::sessions

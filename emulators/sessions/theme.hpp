@@ -43,29 +43,56 @@ struct Words {
   std::string text;
 };
 
-/// A recording without answers, line by line.
-class Script {
+/// The unit of a recording's times.
+enum class TimeUnit : std::uint16_t { kMicrosecond = 1, kMillisecond = 1000 };
+
+/// A session that grows: what all devices' have.
+class Draft {
  public:
-  void set_header(std::string line) { header_ = std::move(line); }
-  void add(std::string_view line) {
-    lines_ += line;
-    lines_ += '\n';
+  struct Start {
+    Dice& dice;
+    std::string_view theme;
+    std::uint64_t seed;
+  };
+  explicit Draft(const Start& start, TimeUnit unit = TimeUnit::kMicrosecond)
+      : dice_{start.dice}, theme_{start.theme}, seed_{start.seed}, unit_{unit} {}
+
+  [[nodiscard]] std::int64_t now_us() const noexcept {
+    return now_ * static_cast<std::int64_t>(unit_);
   }
-  [[nodiscard]] std::string text() const { return header_ + '\n' + lines_; }
+
+ protected:
+  /// A line with what is done now.
+  void add(const Words& what) {
+    lines_ += fmt::format("{{\"t_{}\":{},{}}}\n", unit_ == TimeUnit::kMicrosecond ? "us" : "ms",
+                          now_, what.text);
+  }
+  void wait(std::int64_t time) { now_ += time; }
+  /// The recording; its header ends with `more`.
+  [[nodiscard]] std::string text(std::string_view device, std::string_view more) const {
+    return fmt::format(R"({{"format":"golden-trace/1","device":"{}","source":"drawn at random",)"
+                       R"("title":"random {}",{}}})"
+                       "\n{}",
+                       device, theme_, more, lines_);
+  }
+
+  Dice& dice_;
+  std::string_view theme_;
+  std::uint64_t seed_;
+  std::int64_t now_ = 0;  ///< in its unit
 
  private:
-  std::string header_;
+  TimeUnit unit_;
   std::string lines_;
 };
 
-/// The session of that seed. `Session` is made of dice, the theme's name, the seed and how long it
-/// lasts, knows its time (`now_us`) and ends with `finish`, which gives the text.
+/// The session of that seed. `Session` is a draft, and ends with `finish`, which gives the text.
 template <class Session>
 [[nodiscard]] std::string play(std::uint64_t seed, std::span<const Theme<Session>> themes) {
   Dice dice{seed};
   const auto& theme = dice.weighted(themes, &Theme<Session>::weight);
   const auto end = dice.mostly_low(theme.shortest_us, theme.longest_us);
-  Session session{dice, theme.name, seed};
+  Session session{Draft::Start{dice, theme.name, seed}};
   while (session.now_us() < end) {
     std::invoke(dice.weighted(theme.deeds, &Deed<Session>::weight).act, session);
   }

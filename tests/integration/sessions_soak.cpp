@@ -2,7 +2,7 @@
 // Ten thousand random sessions of each device: each is a recording that verifies, and the emulator
 // does what its plain model does.
 //
-//   sessions_soak [SESSIONS [FIRST_SEED]]
+//   sessions_soak [SESSIONS [FIRST_SEED [DEVICE]]]
 #include <fmt/core.h>
 
 #include <atomic>
@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   const auto first = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1'000'000;
   std::uint64_t different = 0;
   for (const auto& device : armjig::test::kDrawnDevices) {
+    if (argc > 3 && device.name != argv[3]) continue;
     different += differences_of(device, first, count);
   }
   return different == 0 ? 0 : 1;
