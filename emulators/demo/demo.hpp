@@ -27,24 +27,21 @@ class Machine {
 inline constexpr Duration kReplyDelay = std::chrono::milliseconds{1};
 
 /// On a serial line.
-class StreamDevice {
+class StreamDevice : public Sending<SentBytes> {
  public:
   void receive(Instant time, Bytes bytes);
   void advance_to(Instant time);
   [[nodiscard]] std::optional<Instant> next_event() const noexcept;
-  [[nodiscard]] std::span<const SentBytes> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
 
  private:
   Machine machine_;
   Splitter splitter_{kRequestStart};
   std::vector<SentBytes> due_;
-  std::vector<SentBytes> sent_;
 };
 
 /// As a server: greets every connection with its state, throws away one that sends the byte 0, and
 /// ends one that ends.
-class SessionDevice {
+class SessionDevice : public Sending<SessionEvent> {
  public:
   void connect(Instant time);
   void receive(Instant time, Bytes segment);
@@ -53,12 +50,9 @@ class SessionDevice {
   void reset(Instant time);
   void advance_to(Instant time);
   [[nodiscard]] std::optional<Instant> next_event() const noexcept { return stream_.next_event(); }
-  [[nodiscard]] std::span<const SessionEvent> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
 
  private:
   StreamDevice stream_;
-  std::vector<SessionEvent> sent_;
 };
 
 /// At an I2C address: write an operation, then read the state.

@@ -20,10 +20,10 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
      }},
     {{"fault", "FAULT,...", "defects in what it sends: KIND:FIELD, with fields of replies"},
      [](Settings& to, const OptionValue& value) {
-       return value.each([&](const auto& one) {
-         return one.take(parse_fault(one.text(), reply_fields()).map([&](const Fault& fault) {
+       return value.take_each([&](std::string_view text) {
+         return parse_fault(text, reply_fields()).map([&](const Fault& fault) {
            to.faults.push_back(fault);
-         }));
+         });
        });
      }},
 });

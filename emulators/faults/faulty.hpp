@@ -17,7 +17,7 @@ namespace armjig {
 
 /// A device on a stream with defects in what it sends. Needs a device that sends whole messages.
 template <EmulatedStream Device>
-class Faulty {
+class Faulty : public Sending<SentBytes> {
  public:
   /// `message_size`: of what the device receives.
   Faulty(Device device, std::vector<Fault> faults, std::size_t message_size)
@@ -45,8 +45,6 @@ class Faulty {
     }
     return next;
   }
-  [[nodiscard]] std::span<const SentBytes> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
 
   bool set_input(Instant time, std::string_view input, std::int64_t value)
     requires requires(Device device) { device.set_input(time, input, value); }
@@ -104,7 +102,6 @@ class Faulty {
   std::size_t message_size_;
   int messages_ = 0;
   std::vector<SentBytes> held_;  ///< not sent yet
-  std::vector<SentBytes> sent_;
 };
 
 }  // namespace armjig

@@ -62,8 +62,8 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
       "defects, as `armjig conformance mutants kinovazed --list` names them, as in "
       "missing:Unfolded"},
      [](Settings& to, const OptionValue& value) {
-       return value.each(
-           [&](const auto& one) { return one.take(add_fault(one.text(), to.server, to.quirks)); });
+       return value.take_each(
+           [&](std::string_view text) { return add_fault(text, to.server, to.quirks); });
      }},
 });
 constexpr auto kRows = rows_of(kTable);

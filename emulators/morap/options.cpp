@@ -77,9 +77,9 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
     {{"fault", "FAULT,...", "defects, as `armjig conformance mutants morap --list` names them"},
      [](Settings& to, const OptionValue& value) {
        to.node.faults.clear();
-       return value.each([&](const auto& one) {
-         to.node.faults.emplace_back(one.text());
-         return one.take(check_fault(one.text()));
+       return value.take_each([&](std::string_view text) {
+         to.node.faults.emplace_back(text);
+         return check_fault(text);
        });
      }},
     // In files only.

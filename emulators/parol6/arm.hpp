@@ -29,7 +29,7 @@ struct ArmOptions {
 
 /// A PAROL6 as a host sees it: the control board on its serial link, with or without a gripper on
 /// the board's CAN. A regular value: a copy is a snapshot.
-class Arm {
+class Arm : public Sending<SentBytes> {
  public:
   explicit Arm(const ArmOptions& options = {});
 
@@ -42,10 +42,6 @@ class Arm {
 
   /// When telemetry may be sent if nothing more comes. The gripper's answers cause none.
   [[nodiscard]] std::optional<Instant> next_event() const noexcept { return board_.next_event(); }
-
-  /// Telemetry since `clear_sent`, oldest first.
-  [[nodiscard]] std::span<const SentBytes> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
 
   /// Changes the surroundings at `time`: presses the stop, toggles an input, moves an axis by hand.
   /// `change` gets a `Plant&`.
@@ -73,7 +69,6 @@ class Arm {
 
   Board board_;
   std::optional<Gripper> gripper_;
-  std::vector<SentBytes> sent_;
 };
 
 static_assert(EmulatedStream<Arm>);

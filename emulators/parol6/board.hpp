@@ -14,6 +14,7 @@
 #include "emulators/parol6/plant.hpp"
 #include "emulators/parol6/profile.hpp"
 #include "harness/core/bytes.hpp"
+#include "harness/core/emulation.hpp"
 #include "harness/core/time.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
@@ -44,7 +45,7 @@ struct Emission {
 /// then takes at most one CAN frame, then reads all bytes that have come and answers every frame
 /// among them. Passes that only repeat themselves are computed in closed form, so the cost follows
 /// steps and frames, not passes.
-class Board {
+class Board : public Sending<Emission> {
  public:
   explicit Board(const Plant& plant, const BoardTiming& timing = {},
                  const BoardProfile& profile = kFirmwareBoard, const BoardFigures& figures = {});
@@ -68,10 +69,6 @@ class Board {
   /// Power off and on: all state but the plant is lost, and for the 0.74 s of the start-up delays
   /// whatever arrives waits. Homed bits go, the outputs too.
   void reboot(Instant time);
-
-  /// What was sent since `clear_sent`, oldest first.
-  [[nodiscard]] std::span<const Emission> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
 
   /// Changes the surroundings at `time`: presses the stop, toggles an input, moves an axis by hand.
   /// `change` gets a `Plant&`.
@@ -176,7 +173,6 @@ class Board {
   GripperReport gripper_{};
   std::vector<std::byte> bytes_waiting_;
   std::vector<CanFrame> can_waiting_;
-  std::vector<Emission> sent_;
 };
 
 }  // namespace armjig::parol6::emulation

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "emulators/parol6/can.hpp"
+#include "harness/core/emulation.hpp"
 #include "harness/core/quantity.hpp"
 #include "harness/core/time.hpp"
 
@@ -60,7 +61,7 @@ inline constexpr Duration kCanPause = std::chrono::microseconds{3};
 /// motor reaches a speed at once, needs `kFreeCurrent` to move the fingers and its whole limit when
 /// they are held up. The drive's 5 kHz interrupt is where everything happens; stretches in which
 /// an interrupt only repeats the one before are computed in closed form.
-class Gripper {
+class Gripper : public Sending<CanEmission> {
  public:
   static constexpr Duration kTick = std::chrono::microseconds{200};
   static constexpr Milliamperes kFreeCurrent{60};
@@ -77,10 +78,6 @@ class Gripper {
 
   /// When the next answer will be complete.
   [[nodiscard]] std::optional<Instant> next_event() const noexcept;
-
-  /// Answers complete since `clear_sent`, oldest first.
-  [[nodiscard]] std::span<const CanEmission> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
 
   /// Puts something between the fingers at `time`, or takes it away.
   void touch(Instant time, const GripperPlant& plant);
@@ -194,7 +191,6 @@ class Gripper {
   Instant bus_is_free_{};
   Instant mailbox_is_free_{};
   std::vector<Exchange> under_way_;
-  std::vector<CanEmission> sent_;
 };
 
 }  // namespace armjig::parol6::emulation

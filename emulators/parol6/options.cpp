@@ -45,9 +45,8 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
       "defects, as `armjig conformance mutants parol6 --list` names them: KIND:FIELD changes "
       "what the board sends"},
      [](Settings& to, const OptionValue& value) {
-       return value.each([&](const auto& one) {
-         return one.take(add_fault(one.text(), to.arm, to.defects, to.sent));
-       });
+       return value.take_each(
+           [&](std::string_view text) { return add_fault(text, to.arm, to.defects, to.sent); });
      }},
 });
 constexpr auto kRows = rows_of(kTable);

@@ -81,14 +81,14 @@ constexpr std::array kTable{
     DeviceOption<Settings>{
         {"fault", "FAULT,...", "names of `conformance mutants --list`, or KIND:FIELD of replies"},
         [](Settings& settings, const OptionValue& value) {
-          return value.each([&](const OptionValue& one) -> Outcome<void> {
-            if (find_named(defects(), one.text()) != nullptr) {
-              settings.defects.emplace(one.text());
+          return value.take_each([&](std::string_view text) -> Outcome<void> {
+            if (find_named(defects(), text) != nullptr) {
+              settings.defects.emplace(text);
               return {};
             }
-            return one.take(parse_fault(one.text(), block_fields()).map([&](const Fault& fault) {
+            return parse_fault(text, block_fields()).map([&](const Fault& fault) {
               settings.faults.push_back(fault);
-            }));
+            });
           });
         }},
 };

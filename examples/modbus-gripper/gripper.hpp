@@ -30,7 +30,7 @@ using Defects = std::set<std::string, std::less<>>;
 
 /// The gripper without its line: takes requests for it or for all and sends replies, both without
 /// CRC. A write of several registers takes effect as a whole.
-class Gripper {
+class Gripper : public armjig::Sending<armjig::SentBytes> {
  public:
   static constexpr armjig::Duration kReplyDelay = std::chrono::milliseconds{1};
 
@@ -39,8 +39,6 @@ class Gripper {
   void receive(armjig::Instant time, armjig::Bytes request);
   void advance_to(armjig::Instant time);
   [[nodiscard]] std::optional<armjig::Instant> next_event() const noexcept;
-  [[nodiscard]] std::span<const armjig::SentBytes> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
   bool set_input(armjig::Instant time, std::string_view name, std::int64_t value);
   [[nodiscard]] static std::span<const armjig::DeviceInput> inputs() noexcept;
 
@@ -71,11 +69,10 @@ class Gripper {
   unsigned object_ = 0;  ///< its width; 0: there is none
   bool is_jammed_ = false;
   std::deque<armjig::SentBytes> due_;
-  std::vector<armjig::SentBytes> sent_;
 };
 
 /// A gripper on a Modbus line: silence, addresses, CRC; faults are in its replies.
-class Unit {
+class Unit : public armjig::Sending<armjig::SentBytes> {
  public:
   Unit(std::uint8_t address, unsigned baud, Defects defects = {},
        std::vector<armjig::Fault> faults = {});
@@ -83,8 +80,6 @@ class Unit {
   void receive(armjig::Instant time, armjig::Bytes bytes);
   void advance_to(armjig::Instant time);
   [[nodiscard]] std::optional<armjig::Instant> next_event() const;
-  [[nodiscard]] std::span<const armjig::SentBytes> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
   bool set_input(armjig::Instant time, std::string_view name, std::int64_t value) {
     return gripper_.set_input(time, name, value);
   }
@@ -98,7 +93,6 @@ class Unit {
   std::uint8_t address_;
   Defects defects_;
   Receiver receiver_;
-  std::vector<armjig::SentBytes> sent_;
 };
 static_assert(armjig::EmulatedStream<Unit>);
 

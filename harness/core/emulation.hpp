@@ -21,6 +21,18 @@ struct SentBytes {
   std::vector<std::byte> bytes;
 };
 
+/// The part of a device that keeps what it has sent, until somebody has fetched it.
+template <class Sent>
+class Sending {
+ public:
+  /// Since `clear_sent`, oldest first.
+  [[nodiscard]] std::span<const Sent> sent() const noexcept { return sent_; }
+  void clear_sent() noexcept { sent_.clear(); }
+
+ protected:
+  std::vector<Sent> sent_;
+};
+
 /// A device on a byte stream. Times that it is given never decrease. `receive` takes bytes that
 /// become readable at a time, `advance_to` does everything up to and including a time, `next_event`
 /// tells when something may be sent if nothing more comes.

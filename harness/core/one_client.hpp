@@ -16,7 +16,7 @@ namespace armjig {
 /// An `EmulatedServer` as an `EmulatedMultiServer`, which refuses a second client while it has one.
 /// A connection that the device has ended or reset makes room for the next.
 template <EmulatedServer Device>
-class OneClient {
+class OneClient : public Sending<ServerEvent> {
  public:
   explicit OneClient(Device device) : device_{std::move(device)} {}
 
@@ -52,8 +52,6 @@ class OneClient {
     take_sent();
   }
   [[nodiscard]] std::optional<Instant> next_event() const { return device_.next_event(); }
-  [[nodiscard]] std::span<const ServerEvent> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
 
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value)
     requires requires(Device device) { device.set_input(time, name, value); }
@@ -107,7 +105,6 @@ class OneClient {
   Device device_;
   ConnectionId client_ = ConnectionId(-1);  ///< the last one
   Phase phase_{};
-  std::vector<ServerEvent> sent_;
 };
 
 }  // namespace armjig

@@ -75,6 +75,12 @@ class OptionValue {
     }
   }
 
+  /// The same with each value's text, `take_one(std::string_view) -> Outcome<void>`, as for `take`.
+  template <class TakeOne>
+  Outcome<void> take_each(TakeOne take_one) const {
+    return each([&](const OptionValue& one) { return one.take(take_one(one.text())); });
+  }
+
   /// What became of the text, with the hint of whoever refused it.
   [[nodiscard]] Outcome<void> take(const Outcome<void>& taken) const;
 

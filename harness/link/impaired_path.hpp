@@ -4,8 +4,6 @@
 #include <array>
 #include <deque>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "harness/core/bytes.hpp"

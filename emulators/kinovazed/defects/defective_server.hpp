@@ -12,6 +12,7 @@
 #include "emulators/kinovazed/defects/quirks.hpp"
 #include "emulators/kinovazed/server.hpp"
 #include "harness/core/device_input.hpp"
+#include "harness/core/emulation.hpp"
 
 namespace armjig::kinovazed::emulation {
 
@@ -20,7 +21,7 @@ namespace armjig::kinovazed::emulation {
 
 /// A server with quirks at its sockets, and what people can do at its machine. Without quirks it is
 /// the server itself. Times given never decrease.
-class DefectiveServer {
+class DefectiveServer : public Sending<ServerEvent> {
  public:
   explicit DefectiveServer(Server server, std::vector<Quirk> quirks = {});
 
@@ -38,8 +39,6 @@ class DefectiveServer {
 
   void advance_to(Instant time);
   [[nodiscard]] std::optional<Instant> next_event() const noexcept;
-  [[nodiscard]] std::span<const ServerEvent> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
   [[nodiscard]] static std::span<const DeviceInput> inputs() noexcept { return server_inputs(); }
   [[nodiscard]] const std::deque<LogLine>& log() const noexcept { return server_.log(); }
   void clear_log() noexcept { server_.clear_log(); }
@@ -67,7 +66,6 @@ class DefectiveServer {
   ConnectionId next_id_ = 0;
   std::set<ConnectionId> open_;
   std::vector<ServerEvent> later_;  ///< by time
-  std::vector<ServerEvent> sent_;
 };
 
 static_assert(EmulatedMultiServer<DefectiveServer>);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "emulators/faults/fault.hpp"
@@ -67,15 +65,13 @@ struct Defects {
 [[nodiscard]] std::vector<NamedFault> all_faults();
 
 /// An arm with defects. Without any it is the arm itself.
-class DefectiveArm {
+class DefectiveArm : public Sending<SentBytes> {
  public:
   DefectiveArm(const ArmOptions& options, Defects defects);
 
   void receive(Instant time, Bytes bytes);
   void advance_to(Instant time);
   [[nodiscard]] std::optional<Instant> next_event() const noexcept { return arm_.next_event(); }
-  [[nodiscard]] std::span<const SentBytes> sent() const noexcept { return sent_; }
-  void clear_sent() noexcept { sent_.clear(); }
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
   [[nodiscard]] static std::span<const DeviceInput> inputs() noexcept { return arm_inputs(); }
 
@@ -103,7 +99,6 @@ class DefectiveArm {
   CommandFrame last_asked_{};
   CommandFrame last_passed_{};
   Instant last_heard_{};
-  std::vector<SentBytes> sent_;
 };
 
 static_assert(EmulatedStream<DefectiveArm>);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-#include <string>
-
 #include "harness/console/device_console.hpp"
 #include "harness/console/watched.hpp"
 #include "harness/rig/rig.hpp"
