@@ -79,6 +79,8 @@ struct Device {
   std::span<const OptionRow> (*options)() noexcept {};  ///< of the emulated one
   Suite (*suite)(){};
   MutantsEntry (*mutants)() noexcept {};
+  /// Finds requests and answers in recordings; none: `latency --from` can not.
+  std::unique_ptr<Probe> (*make_listener)(){};
   std::optional<ProgramCheckEntry> program_check{};  ///< none: nothing is demanded of programs
   Replay replay{};                                   ///< how recordings drive it
   DrawSession draw_session{};                        ///< none: nothing is drawn at random

@@ -18,9 +18,12 @@
 #include "cli/report_files.hpp"
 #include "cli/signals.hpp"
 #include "cli/target_options.hpp"
+#include "harness/capture/capture.hpp"
 #include "harness/files/user_file.hpp"
 #include "harness/latency/latency_run.hpp"
 #include "harness/latency/load.hpp"
+#include "harness/latency/recorded.hpp"
+#include "harness/report/wording.hpp"
 #include "harness/rig/direct_line.hpp"
 
 namespace armjig::cli {
@@ -35,6 +38,7 @@ constexpr auto kHelp =
     "  armjig latency DEVICE --target emulated: --count 1000     in virtual time, at once\n"
     "  armjig latency DEVICE --target pty:/tmp/arm --limit 'p99<2ms,lost<1' --html report.html\n"
     "  armjig latency DEVICE --target pty:/tmp/old --against pty:/tmp/new --seconds 60\n"
+    "  armjig latency DEVICE --from session.pcapng               what a recording shows\n"
     "\n"
     "Sends a harmless request again and again: what is sent, and what the guard has to be told "
     "for\n"
@@ -47,6 +51,7 @@ struct Options {
   std::string device;
   TargetOptions target;
   std::string against;
+  std::string from;
   std::string baseline;
   double rate = 100;
   bool is_closed_loop = false;
@@ -238,78 +243,97 @@ Exit exit_of(const Report& report, const LatencyRun& run, const Signals& signals
 }
 
 /// What is left to be known once it has ended.
-void finish(LatencyRun& run, const Wanted& wanted, const Station& station) {
-  const auto& measured = run.measured;
-  run.figures = station.probe().figures(
-      {.period = wanted.plan.period, .median = measured.round_trips.percentile(50)});
-  for (const auto& limit : wanted.limits) run.limits.push_back(check(limit, measured));
+void finish(LatencyRun& run, const Wanted& wanted) {
+  for (const auto& limit : wanted.limits) run.limits.push_back(check(limit, run.measured));
   if (!wanted.baseline) return;
-  const auto rows = percentiles_of(measured);
-  if (rows.empty()) return;
+  const auto rows = percentiles_of(run.measured);
+  if (rows.empty() || !rows.front().interval) return;
   run.comparison =
-      compare_with(*wanted.baseline, rows.front().raw, rows.front().interval, kLatencyConfidence);
+      compare_with(*wanted.baseline, rows.front().raw, *rows.front().interval, kLatencyConfidence);
 }
 
-Exit latency(Devices devices, const Options& options) {
-  const auto found = find_device(devices, options.device);
-  if (!found) return report(found.error());
-  auto how = parse_target_options(options.target);
-  if (!how) return report(how.error());
-  if (const auto wrong = problem_of(options, *how)) return report(*wrong);
-  const auto wanted = wanted_of(options);
-  if (!wanted) return report(wanted.error());
-  const auto files = open_outputs(
-      {{"--json", options.json}, {"--html", options.html}, {"--hlog", options.histogram_log}});
-  if (!files) return report(files.error());
-
-  std::vector<RigOptions> hows{*how};
-  if (!options.against.empty()) {
-    auto other = parse_target(options.against);
-    if (!other) return report(other.error());
-    if (other->is_emulated() != how->target.is_emulated()) {
-      return report(
-          {ErrorCode::kBadValue, "--against", "virtual time and real time cannot be compared"});
-    }
-    hows.push_back(*how);
-    hows.back().target = *std::move(other);
-    hows.back().wire_log.reset();
+/// The run that is in the file, a recording or a log of histograms.
+Outcome<LatencyRun> parse_run(Devices devices, const Device& device, const Options& options) {
+  auto file = options.from == "-" ? UserFile::standard_input() : UserFile::open(options.from);
+  if (!file) return tl::unexpected{std::move(file.error())};
+  if (file->peek() == '#' || file->peek() == '"') {
+    return file->rest().and_then(
+        [&options](const std::string& log) { return run_of_log(log, options.from); });
   }
-  Signals signals;
+  if (device.make_listener == nullptr) {
+    return problem(ErrorCode::kUnsupported, options.from,
+                   "nobody has said what requests and answers of this device are in a recording");
+  }
+  auto reader = CaptureReader::open(*std::move(file), options.from);
+  if (!reader) return tl::unexpected{std::move(reader.error())};
+  const auto is_ours = [&](std::string_view name) {
+    return name.empty() || find_recorded_device(devices, name) == &device;
+  };
+  auto run = run_of(**reader, {.make_listener = device.make_listener,
+                               .is_ours = is_ours,
+                               .patience = duration_of(options.timeout)});
+  if (const auto warning = (*reader)->warning(); run && !warning.empty()) {
+    fmt::print(stderr, "armjig: {}\n", wording::line(warning));
+  }
+  return run;
+}
+
+Outcome<LatencyRun> read_run(Devices devices, const Device& device, const Options& options) {
+  auto run = parse_run(devices, device, options);
+  if (!run) return run;
+  if (run->measured.round_trips.count() == 0) {
+    return problem(ErrorCode::kMalformed, options.from,
+                   fmt::format("no answer of a {} to a request is in there", options.device));
+  }
+  run->device = std::string{device.name};
+  run->target = options.from;
+  return run;
+}
+
+/// How measuring ended.
+struct Ended {
+  LatencyRun run;
+  std::optional<Problem> failure;  ///< after which nothing more could be measured
+};
+
+/// Measures a target, or two in turn.
+Outcome<Ended> measure(const Device& device, std::span<const RigOptions> hows,
+                       const Options& options, const Wanted& wanted, const Signals& signals) {
   std::vector<std::unique_ptr<Station>> stations;
   for (const auto& one : hows) {
-    auto station = Station::open(**found, one);
-    if (!station) return report(station.error());
-    if (const auto refused = (*station)->refusal_of(one)) return report(*refused);
+    auto station = Station::open(device, one);
+    if (!station) return tl::unexpected{station.error()};
+    if (auto refused = (*station)->refusal_of(one)) return tl::unexpected{*std::move(refused)};
     stations.push_back(*std::move(station));
   }
-
-  LatencyRun run{.device = std::string{(*found)->name},
-                 .target = how->target.text,
+  const auto& how = hows.front();
+  LatencyRun run{.device = std::string{device.name},
+                 .target = how.target.text,
                  .exchange = std::string{stations[0]->probe().exchange()},
                  .path = std::string{stations[0]->path().name()},
                  .machine = machine(),
                  .load = options.load,
-                 .plan = wanted->plan,
+                 .plan = wanted.plan,
                  .time_on_wire = stations[0]->probe().time_on_wire()};
   MeterProgress progress;
-  for (const auto& station : stations) station->begin(wanted->plan, signals, progress);
+  for (const auto& station : stations) station->begin(wanted.plan, signals, progress);
 
   std::array<std::vector<Slice>, 2> slices;
-  const auto measure = [&] {
-    return stations.size() == 2 ? alternate(stations, *wanted, slices)
-                                : stations[0]->meter().run(wanted->until);
+  const auto work = [&] {
+    return stations.size() == 2 ? alternate(stations, wanted, slices)
+                                : stations[0]->meter().run(wanted.until);
   };
   Result<bool> done;
-  if (how->target.is_emulated()) {
-    done = measure();
+  if (how.target.is_emulated()) {
+    done = work();
   } else {
     run.started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
     const Realtime realtime{{.priority = options.priority, .processor = options.processor}};
     run.privileges = realtime.privileges();
-    const Load load{wanted->load.value_or(LoadPlan{})};
+    const Load load{wanted.load.value_or(LoadPlan{})};
     const ProgressLine line{progress};
     Sentinel sentinel{stations[0]->path().now(), 1ms, 100us};
-    done = measure();
+    done = work();
     sentinel.stop();
     run.witness =
         Witness{sentinel.lateness(), {sentinel.oversleeps().begin(), sentinel.oversleeps().end()}};
@@ -320,7 +344,63 @@ Exit latency(Devices devices, const Options& options) {
     run.target = fmt::format("{} against {}", hows[1].target.text, hows[0].target.text);
     run.comparison = compare_alternated(slices[0], slices[1], 1);
   }
-  finish(run, *wanted, *stations.back());
+  run.figures = stations.back()->probe().figures(
+      {.period = wanted.plan.period, .median = run.measured.round_trips.percentile(50)});
+  Ended ended{std::move(run), std::nullopt};
+  if (!done) {
+    const auto& failed = *std::ranges::max_element(
+        stations, {}, [](const auto& station) { return station->meter().measured().lost; });
+    ended.failure = failed->problem_of(done.error(), ended.run.target);
+  } else if (ended.run.measured.round_trips.count() == 0 && !ended.run.is_interrupted) {
+    ended.failure = {ErrorCode::kTimedOut, ended.run.target,
+                     fmt::format("no answer came: is a {} there, switched on, and free for us?",
+                                 options.device)};
+  }
+  return ended;
+}
+
+/// One target, or with `--against` two.
+Outcome<std::vector<RigOptions>> targets_of(const Options& options) {
+  auto how = parse_target_options(options.target);
+  if (!how) return tl::unexpected{how.error()};
+  if (auto wrong = problem_of(options, *how)) return tl::unexpected{*std::move(wrong)};
+  std::vector<RigOptions> hows{*std::move(how)};
+  if (options.against.empty()) return hows;
+  auto other = parse_target(options.against);
+  if (!other) return tl::unexpected{other.error()};
+  if (other->is_emulated() != hows[0].target.is_emulated()) {
+    return problem(ErrorCode::kBadValue, "--against",
+                   "virtual time and real time cannot be compared");
+  }
+  hows.push_back(hows[0]);
+  hows.back().target = *std::move(other);
+  hows.back().wire_log.reset();
+  return hows;
+}
+
+Exit latency(Devices devices, const Options& options) {
+  const auto found = find_device(devices, options.device);
+  if (!found) return report(found.error());
+  std::vector<RigOptions> hows;
+  if (options.from.empty()) {
+    auto targets = targets_of(options);
+    if (!targets) return report(targets.error());
+    hows = *std::move(targets);
+  }
+  const auto wanted = wanted_of(options);
+  if (!wanted) return report(wanted.error());
+  const auto files = open_outputs(
+      {{"--json", options.json}, {"--html", options.html}, {"--hlog", options.histogram_log}});
+  if (!files) return report(files.error());
+
+  const Signals signals;
+  auto ended = options.from.empty() ? measure(**found, hows, options, *wanted, signals)
+                                    : read_run(devices, **found, options).map([](LatencyRun run) {
+                                        return Ended{std::move(run), std::nullopt};
+                                      });
+  if (!ended) return report(ended.error());
+  auto& run = ended->run;
+  finish(run, *wanted);
 
   const auto result = report_of(run);
   const auto& [json, html, log] = *files;
@@ -328,16 +408,7 @@ Exit latency(Devices devices, const Options& options) {
   if (html != nullptr) html->put(to_html(result));
   if (log != nullptr) log->put(to_latency_log(run));
   fmt::print("{}", to_text(result));
-  if (!done) {
-    const auto& failed = *std::ranges::max_element(
-        stations, {}, [](const auto& station) { return station->meter().measured().lost; });
-    return report(failed->problem_of(done.error(), run.target));
-  }
-  if (run.measured.round_trips.count() == 0 && !run.is_interrupted) {
-    return report({ErrorCode::kTimedOut, run.target,
-                   fmt::format("no answer came: is a {} there, switched on, and free for us?",
-                               options.device)});
-  }
+  if (ended->failure) return report(*ended->failure);
   return exit_of(result, run, signals);
 }
 
@@ -393,6 +464,14 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
   command->add_option("--html", options->html, "also write a page with curves")->type_name("FILE");
   command->add_option("--hlog", options->histogram_log, "also write a log for HdrHistogram's tools")
       ->type_name("FILE");
+  auto* from = command->add_option("--from", options->from,
+                                   "measure nothing: what a recording or a log of --hlog shows");
+  from->type_name("FILE");
+  for (const auto* const other :
+       {"--target", "--allow", "--impair", "--wire-log", "--against", "--rate", "--closed-loop",
+        "--burst", "--count", "--seconds", "--load", "--priority", "--processor"}) {
+    from->excludes(command->get_option(other));
+  }
   command->callback([options, devices, &action] {
     action = [options, devices] { return latency(devices, *options); };
   });

@@ -23,9 +23,13 @@ Outcome<std::unique_ptr<Watched>> watch(Rig<StreamPort> rig, const std::string& 
                         {{query.begin(), query.end()}});
 }
 
-Outcome<std::unique_ptr<Probe>> make_probe(StreamPort& /*port*/, const std::string& /*target*/) {
+std::unique_ptr<Probe> make_listener() {
   const auto query = encode(Operation::kQuery);
   return generic::make_probe("query to reply", {query.begin(), query.end()}, kMessageSize);
+}
+
+Outcome<std::unique_ptr<Probe>> make_probe(StreamPort& /*port*/, const std::string& /*target*/) {
+  return make_listener();
 }
 
 }  // namespace
@@ -43,6 +47,7 @@ cli::Device device() {
           .options = emulation::options,
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,
+          .make_listener = make_listener,
           .replay = {.run = replay::replay}};
 }
 

@@ -27,6 +27,7 @@ cli::Device device() {
           .options = emulation::options,
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,
+          .make_listener = latency::make_listener,
           .program_check = programs::program_check(),
           .replay = {.run = replay::replay, .run_plainly = replay::replay_plainly},
           .draw_session = sessions::draw,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/latency/generic_probe.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace armjig::generic {
@@ -14,6 +15,11 @@ class FixedProbe final : public Probe {
   std::string_view exchange() const noexcept override { return exchange_; }
   Hazard hazard() const noexcept override { return Hazard::kObserve; }
   Messages request() override { return {&message_, 1}; }
+  std::size_t requested(Instant /*now*/, Bytes bytes) override {
+    if (!std::ranges::equal(bytes, request_)) return 0;
+    size_ = 0;  // what came before was the answer to something else
+    return 1;
+  }
   std::size_t receive(Instant /*now*/, Bytes bytes) override {
     size_ += bytes.size();
     const auto answers = size_ / answer_size_;

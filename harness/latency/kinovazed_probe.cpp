@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/latency/kinovazed_probe.hpp"
 
+#include <fmt/core.h>
+
+#include <array>
 #include <chrono>
+#include <deque>
 #include <optional>
 #include <variant>
 
+#include "harness/drive/kinovazed/drive.hpp"
 #include "harness/timing/latency_histogram.hpp"
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/kinovazed/line_splitter.hpp"
@@ -15,11 +20,84 @@ namespace {
 
 constexpr double kSecond = 1e9;
 
+/// Commands in a recording, until they are done. The event that says so may come before Accepted.
+class Commands {
+ public:
+  void request(Instant now, Verb verb) { waiting_.push_back({verb, now}); }
+
+  void reply(Event reply) {
+    if (waiting_.empty()) return;
+    const auto first = waiting_.front();
+    waiting_.pop_front();
+    if (reply == Event::kAccepted && !first.is_done) begun_[index(first.verb)] = first.sent;
+  }
+
+  void complete(Instant now, Event event) {
+    const auto ends = [event](Verb verb) { return drive::completion_of(verb) == event; };
+    for (std::size_t i = 0; i < kAnsweredVerbs; ++i) {
+      if (!ends(static_cast<Verb>(i)) || !begun_[i]) continue;
+      times_[i].push_back(now - *begun_[i]);
+      begun_[i].reset();
+      return;
+    }
+    for (auto& one : waiting_) {
+      if (one.is_done || !ends(one.verb)) continue;
+      one.is_done = true;
+      times_[index(one.verb)].push_back(now - one.sent);
+      return;
+    }
+  }
+
+  void tell(std::vector<Figure>& figures) const {
+    for (std::size_t i = 0; i < kAnsweredVerbs; ++i) {
+      if (times_[i].empty()) continue;
+      LatencyHistogram histogram;
+      for (const auto time : times_[i]) histogram.record(time);
+      const auto verb = static_cast<Verb>(i);
+      const auto name = fmt::format("{} to {}", to_string(verb),
+                                    to_string(drive::completion_of(verb).value_or(Event{})));
+      const auto basis = fmt::format("{} of them, from command to event", times_[i].size());
+      const auto add = [&](const char* which, Duration time) {
+        figures.push_back({fmt::format("{}, {}", name, which),
+                           static_cast<double>(time.count()) / 1e6, "ms", basis});
+      };
+      add("median", histogram.percentile(50));
+      add("most", histogram.max());
+    }
+  }
+
+ private:
+  struct Waiting {
+    Verb verb{};
+    Instant sent{};
+    bool is_done = false;
+  };
+  static constexpr std::size_t index(Verb verb) noexcept { return static_cast<std::size_t>(verb); }
+
+  std::deque<Waiting> waiting_;  ///< for their reply
+  std::array<std::optional<Instant>, kAnsweredVerbs> begun_;
+  std::array<std::vector<Duration>, kAnsweredVerbs> times_;
+};
+
 class ReplyProbe final : public Probe {
  public:
-  std::string_view exchange() const noexcept override { return "Unfreeze to Accepted or Rejected"; }
+  explicit ReplyProbe(std::string_view exchange) noexcept : exchange_{exchange} {}
+
+  std::string_view exchange() const noexcept override { return exchange_; }
   Hazard hazard() const noexcept override { return Hazard::kState; }
   Messages request() override { return {&message_, 1}; }
+
+  std::size_t requested(Instant now, Bytes bytes) override {
+    std::size_t requests = 0;
+    for_each_step(commands_, bytes, [&](const LineSplitter::Step& step) {
+      if (step.found != LineSplitter::Found::kLine) return;
+      const auto command = decode_command(step.line, Profile::kFirmware);
+      if (!command || !is_answered(command->verb)) return;
+      asked_.request(now, command->verb);
+      ++requests;
+    });
+    return requests;
+  }
 
   std::size_t receive(Instant now, Bytes bytes) override {
     std::size_t replies = 0;
@@ -29,21 +107,31 @@ class ReplyProbe final : public Probe {
       if (!message) return;
       if (std::holds_alternative<Heartbeat>(*message)) take_beat(now);
       const auto* const event = std::get_if<Event>(&*message);
-      if (event != nullptr && (*event == Event::kAccepted || *event == Event::kRejected)) ++replies;
+      if (event == nullptr) return;
+      if (*event != Event::kAccepted && *event != Event::kRejected) {
+        asked_.complete(now, *event);
+        return;
+      }
+      asked_.reply(*event);
+      ++replies;
     });
     return replies;
   }
 
   std::vector<Figure> figures(const RunFacts& /*facts*/) const override {
-    if (periods_.count() == 0) return {};
+    std::vector<Figure> figures;
+    asked_.tell(figures);
+    if (periods_.count() == 0) return figures;
     const auto ns = [](Duration duration) { return static_cast<double>(duration.count()); };
     constexpr auto kBasis = "times at which heartbeats were read";
     const auto mean =
         ns(last_beat_.value_or(Instant{}) - first_beat_) / static_cast<double>(periods_.count());
-    return {{"heartbeat period, mean", mean / 1e6, "ms", kBasis},
-            {"heartbeat period, least", ns(periods_.min()) / 1e6, "ms", kBasis},
-            {"heartbeat period, most", ns(periods_.max()) / 1e6, "ms", kBasis},
-            {"heartbeat drift against one second", 1e6 * (mean / kSecond - 1), "ppm", kBasis}};
+    figures.push_back({"heartbeat period, mean", mean / 1e6, "ms", kBasis});
+    figures.push_back({"heartbeat period, least", ns(periods_.min()) / 1e6, "ms", kBasis});
+    figures.push_back({"heartbeat period, most", ns(periods_.max()) / 1e6, "ms", kBasis});
+    figures.push_back(
+        {"heartbeat drift against one second", 1e6 * (mean / kSecond - 1), "ppm", kBasis});
+    return figures;
   }
 
  private:
@@ -56,9 +144,12 @@ class ReplyProbe final : public Probe {
     last_beat_ = now;
   }
 
+  std::string_view exchange_;
   EncodedLine line_ = encode(Command{.verb = Verb::kUnfreeze});
   Bytes message_ = line_.bytes();
   LineSplitter splitter_;
+  LineSplitter commands_;
+  Commands asked_;  ///< in a recording
   Instant first_beat_{};
   std::optional<Instant> last_beat_;
   LatencyHistogram periods_;
@@ -67,7 +158,11 @@ class ReplyProbe final : public Probe {
 }  // namespace
 
 Outcome<std::unique_ptr<Probe>> make_probe(SessionSource& /*port*/, const std::string& /*target*/) {
-  return std::make_unique<ReplyProbe>();
+  return std::make_unique<ReplyProbe>("Unfreeze to Accepted or Rejected");
+}
+
+std::unique_ptr<Probe> make_listener() {
+  return std::make_unique<ReplyProbe>("any command to Accepted or Rejected");
 }
 
 }  // namespace armjig::kinovazed::latency

@@ -14,4 +14,8 @@ namespace armjig::kinovazed::latency {
 [[nodiscard]] Outcome<std::unique_ptr<Probe>> make_probe(SessionSource& port,
                                                          const std::string& target);
 
+/// For recordings of what others asked. Any command that is answered; and how long until what it
+/// began was done.
+[[nodiscard]] std::unique_ptr<Probe> make_listener();
+
 }  // namespace armjig::kinovazed::latency

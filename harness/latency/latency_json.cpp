@@ -26,13 +26,21 @@ Json round_trip_of(const Measured& measured) {
   json["confidence"] = kLatencyConfidence;
   json["percentiles"] = Json::array();
   for (const auto& row : percentiles_of(measured)) {
+    const auto end = [&row](Duration ConfidenceInterval::* which) {
+      return row.interval ? Json((*row.interval.*which).count()) : Json(nullptr);
+    };
     json["percentiles"].push_back({{"percent", row.percent},
                                    {"ns", row.raw.count()},
-                                   {"low_ns", row.interval.low.count()},
-                                   {"high_ns", row.interval.high.count()},
+                                   {"low_ns", end(&ConfidenceInterval::low)},
+                                   {"high_ns", end(&ConfidenceInterval::high)},
                                    {"corrected_ns", row.corrected.count()}});
   }
   return json;
+}
+
+std::string date_of(const LatencyRun& run) {
+  if (run.started) return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", *run.started);
+  return run.is_virtual() ? "virtual" : "unknown";
 }
 
 Json outliers_of(const LatencyRun& run) {
@@ -82,8 +90,10 @@ std::string to_latency_json(const LatencyRun& run) {
             {"path", run.path},
             {"machine", run.machine},
             {"load", run.load},
-            {"date", run.started ? fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", *run.started) : "virtual"},
+            {"date", date_of(run)},
             {"is_virtual", run.is_virtual()},
+            {"is_recorded", run.is_recorded},
+            {"left_out", run.left_out},
             {"is_interrupted", run.is_interrupted},
             {"period_ns", run.plan.period ? Json(run.plan.period->count()) : Json(nullptr)},
             {"burst", run.plan.burst},

@@ -2,6 +2,7 @@
 #include "harness/latency/latency_run.hpp"
 
 #include <fmt/chrono.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,9 @@ std::string text_of(Duration duration) {
 }
 double as_milliseconds(Duration duration) { return static_cast<double>(duration.count()) / 1e6; }
 
-std::string rate_of(const MeterPlan& plan) {
+std::string rate_of(const LatencyRun& run) {
+  const auto& plan = run.plan;
+  if (run.is_recorded && !plan.period) return "unknown";
   auto text = plan.period
                   ? fmt::format("{:g} requests/s", 1e9 / static_cast<double>(plan.period->count()))
                   : std::string{"closed loop"};
@@ -85,9 +88,11 @@ ReportSection round_trips_of(const LatencyRun& run) {
   rows.push_back(
       {"least", text_of(measured.round_trips.min()), "", text_of(measured.corrected.min())});
   for (const auto& row : percentiles_of(measured)) {
-    rows.push_back({fmt::format("{:g} %", row.percent), text_of(row.raw),
-                    fmt::format("{} to {}", text_of(row.interval.low), text_of(row.interval.high)),
-                    text_of(row.corrected)});
+    const auto between = row.interval ? fmt::format("{} to {}", text_of(row.interval->low),
+                                                    text_of(row.interval->high))
+                                      : "unknown";
+    rows.push_back(
+        {fmt::format("{:g} %", row.percent), text_of(row.raw), between, text_of(row.corrected)});
   }
   rows.push_back(
       {"most", text_of(measured.round_trips.max()), "", text_of(measured.corrected.max())});
@@ -207,16 +212,21 @@ std::vector<PercentileRow> percentiles_of(const Measured& measured) {
   std::vector<double> percents;
   std::vector<Duration> values;
   for (const auto& trip : measured.trips) values.push_back(trip.duration);
+  const auto count =
+      static_cast<double>(values.empty() ? measured.round_trips.count() : values.size());
   for (const double percent : {50.0, 90.0, 99.0, 99.9, 99.99, 99.999}) {
     // At least one answer is beyond it.
-    if (static_cast<double>(values.size()) * (100 - percent) >= 99.9) percents.push_back(percent);
+    if (count * (100 - percent) >= 99.9) percents.push_back(percent);
+  }
+  std::vector<ConfidenceInterval> intervals;
+  if (!values.empty()) {
+    intervals = percentile_intervals(values, percents, {.confidence = kLatencyConfidence});
   }
   std::vector<PercentileRow> rows;
-  if (values.empty()) return rows;
-  const auto intervals = percentile_intervals(values, percents, {.confidence = kLatencyConfidence});
   for (std::size_t i = 0; i < percents.size(); ++i) {
-    rows.push_back({percents[i], measured.round_trips.percentile(percents[i]), intervals[i],
+    rows.push_back({percents[i], measured.round_trips.percentile(percents[i]), std::nullopt,
                     measured.corrected.percentile(percents[i])});
+    if (!intervals.empty()) rows.back().interval = intervals[i];
   }
   return rows;
 }
@@ -239,12 +249,14 @@ std::vector<Share> shares_of(const LatencyRun& run) {
   for (const auto& trip : measured.trips) {
     rest.record(trip.duration - trip.delivery.value_or(Duration{}) - wire);
   }
+  if (measured.trips.empty()) rest = measured.round_trips;
   if (run.time_on_wire) {
     shares.push_back({"link", wire, wire, "arithmetic: the bits of the exchange"});
   }
   shares.push_back({run.time_on_wire ? "device" : "device or link", rest.percentile(50),
                     rest.percentile(99),
-                    run.is_virtual() || measured.delivery.count() > 0
+                    run.is_recorded ? "what is left; the part of the host that recorded is in there"
+                    : run.is_virtual() || measured.delivery.count() > 0
                         ? "what is left"
                         : "what is left; the host's own part is in there, for this link has no "
                           "time stamps"});
@@ -273,11 +285,15 @@ Report report_of(const LatencyRun& run) {
   auto& facts = report.facts;
   facts = {{"target", run.target},
            {"measured", run.exchange},
-           {"rate", rate_of(run.plan)},
+           {"rate", rate_of(run)},
            {"requests", counts_of(run.measured)},
-           {"path", run.path},
-           {"machine", run.machine},
-           {"load", run.load.empty() ? "none of ours" : run.load}};
+           {"path", run.path}};
+  if (run.is_recorded) {
+    facts.emplace_back("left out", fmt::format("{}", fmt::join(run.left_out, "; ")));
+  } else {
+    facts.emplace_back("machine", run.machine);
+    facts.emplace_back("load", run.load.empty() ? "none of ours" : run.load);
+  }
   if (!run.privileges.empty()) facts.emplace_back("permissions", privileges_of(run));
   if (run.witness) {
     facts.emplace_back("sentinel", fmt::format("overslept by {} at 50 %, 99 % and most",
@@ -293,11 +309,11 @@ Report report_of(const LatencyRun& run) {
   if (run.comparison) report.rows.push_back(row_of(*run.comparison));
   if (run.measured.round_trips.count() == 0) return report;
   auto trips = round_trips_of(run);
-  trips.plots = {curve_of(run.measured), bars_of(run.measured.round_trips),
-                 series_of(run.measured)};
+  trips.plots = {curve_of(run.measured), bars_of(run.measured.round_trips)};
+  if (!run.measured.trips.empty()) trips.plots.push_back(series_of(run.measured));
   report.sections = {std::move(trips), shares_section_of(run)};
   if (!run.figures.empty()) report.sections.push_back(figures_of(run));
-  report.sections.push_back(worst_of(run));
+  if (!run.measured.outliers.empty()) report.sections.push_back(worst_of(run));
   return report;
 }
 

@@ -40,8 +40,10 @@ struct LatencyRun {
   std::vector<LimitVerdict> limits;
   std::optional<LatencyComparison> comparison;
   bool is_interrupted = false;
+  std::vector<std::string> left_out;  ///< what a recording does not have
+  bool is_recorded = false;           ///< by somebody, not measured now
 
-  [[nodiscard]] bool is_virtual() const noexcept { return !started; }
+  [[nodiscard]] bool is_virtual() const noexcept { return !started && !is_recorded; }
 };
 
 /// A share of the round trip, and what says so.
@@ -56,7 +58,7 @@ struct Share {
 struct PercentileRow {
   double percent{};
   Duration raw{};
-  ConfidenceInterval interval{};  ///< of `raw`
+  std::optional<ConfidenceInterval> interval;  ///< of `raw`; none: their order is not known
   Duration corrected{};
 };
 

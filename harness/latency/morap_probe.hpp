@@ -13,4 +13,8 @@ namespace armjig::morap::latency {
 /// nobody answers (`kTimedOut`), trouble with the bus. `target` is for messages.
 [[nodiscard]] Outcome<std::unique_ptr<Probe>> make_probe(BusPort& port, const std::string& target);
 
+/// For recordings of what others asked. Any choice of what to read, of one node or several, and the
+/// read that follows it.
+[[nodiscard]] std::unique_ptr<Probe> make_listener();
+
 }  // namespace armjig::morap::latency

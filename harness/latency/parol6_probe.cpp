@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/latency/parol6_probe.hpp"
 
+#include <array>
 #include <optional>
 
 #include "harness/timing/latency_histogram.hpp"
@@ -19,7 +20,9 @@ constexpr Duration kLongestInterval = std::chrono::milliseconds{90};
 
 class IdleProbe final : public Probe {
  public:
-  std::string_view exchange() const noexcept override { return "idle frame to telemetry"; }
+  explicit IdleProbe(std::string_view exchange) noexcept : exchange_{exchange} {}
+
+  std::string_view exchange() const noexcept override { return exchange_; }
   Hazard hazard() const noexcept override { return Hazard::kObserve; }
   Messages request() override { return {&message_, 1}; }
 
@@ -27,21 +30,29 @@ class IdleProbe final : public Probe {
     std::size_t answers = 0;
     for_each_step(splitter_, bytes, [&](const Splitter::Step& step) {
       if (const auto frame = telemetry_of(step)) {
-        ++answers;
-        board_ = interval_of(frame->timing);
+        intervals_[(told_ + answers++) % intervals_.size()] = interval_of(frame->timing);
       }
     });
     return answers;
   }
 
-  void answered(Instant sent, Instant /*received*/) override {
-    const auto host = last_sent_ ? sent - *last_sent_ : Duration::max();
+  std::size_t requested(Instant /*now*/, Bytes bytes) override {
+    std::size_t requests = 0;
+    for_each_step(commands_, bytes, [&requests](const Splitter::Step& step) {
+      if (std::holds_alternative<Splitter::Frame>(step.found)) ++requests;
+    });
+    return requests;
+  }
+
+  void answered(std::optional<Instant> sent, Instant /*received*/) override {
+    const auto board = intervals_[told_++ % intervals_.size()];
+    const auto host = sent && last_sent_ ? *sent - *last_sent_ : Duration::max();
     last_sent_ = sent;
     if (host <= Duration{} || host > kLongestInterval) return;
     host_sum_ += host;
-    board_sum_ += board_;
+    board_sum_ += board;
     ++count_;
-    const auto difference = board_ - host;
+    const auto difference = board - host;
     (difference < Duration{} ? early_ : late_)
         .record(difference < Duration{} ? -difference : difference);
   }
@@ -72,8 +83,11 @@ class IdleProbe final : public Probe {
 
   CommandBytes frame_ = encode(CommandFrame{.command = Command::kIdle});
   Bytes message_{frame_};
+  std::string_view exchange_;
   Splitter splitter_{kTelemetryPayloadSize};
-  Duration board_{};  ///< of the newest telemetry
+  Splitter commands_{kCommandPayloadSize};
+  std::array<Duration, 256> intervals_{};  ///< of telemetry that belongs to nobody yet; a ring
+  std::size_t told_ = 0;
   std::optional<Instant> last_sent_;
   Duration host_sum_{};
   Duration board_sum_{};
@@ -85,7 +99,11 @@ class IdleProbe final : public Probe {
 }  // namespace
 
 Outcome<std::unique_ptr<Probe>> make_probe(StreamPort& /*port*/, const std::string& /*target*/) {
-  return std::make_unique<IdleProbe>();
+  return std::make_unique<IdleProbe>("idle frame to telemetry");
+}
+
+std::unique_ptr<Probe> make_listener() {
+  return std::make_unique<IdleProbe>("any command frame to telemetry");
 }
 
 }  // namespace armjig::parol6::latency

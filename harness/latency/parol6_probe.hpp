@@ -15,4 +15,7 @@ namespace armjig::parol6::latency {
 [[nodiscard]] Outcome<std::unique_ptr<Probe>> make_probe(StreamPort& port,
                                                          const std::string& target);
 
+/// For recordings of what others asked. Any frame of a command counts, for the board answers each.
+[[nodiscard]] std::unique_ptr<Probe> make_listener();
+
 }  // namespace armjig::parol6::latency

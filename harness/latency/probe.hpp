@@ -46,8 +46,15 @@ class Probe {
   /// Takes what came, however it was cut. How many answers end in there, in the order of the
   /// requests; what the device says by itself is none.
   [[nodiscard]] virtual std::size_t receive(Instant now, Bytes bytes) = 0;
-  /// The answer that ended last belongs to a request that was sent then.
-  virtual void answered(Instant /*sent*/, Instant /*received*/) {}
+  /// The next of the answers that `receive` counted belongs to a request that was sent then; none:
+  /// to nothing.
+  virtual void answered(std::optional<Instant> /*sent*/, Instant /*received*/) {}
+
+  /// In a recording, where others asked: takes what was sent, however it was cut. How many requests
+  /// end in there to which an answer is due.
+  [[nodiscard]] virtual std::size_t requested(Instant /*now*/, Bytes /*bytes*/) { return 0; }
+  /// How long what came still took after the time that a recording has for it.
+  [[nodiscard]] virtual Duration rest_of(Bytes /*bytes*/) const { return {}; }
 
   /// How long the bits of an exchange take on its link; none if nobody can know.
   [[nodiscard]] virtual std::optional<Duration> time_on_wire() const { return std::nullopt; }

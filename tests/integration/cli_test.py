@@ -60,6 +60,7 @@ def rows(folder):
     other = written(folder, "other.jsonl", '{"format":"golden-trace/1","device":"toaster"}\n')
     faulty = "emulated:?fault=swap-bytes:speed.j1"
     examples = SOURCE / "harness/script/examples"
+    captures = SOURCE / "captures"
     wrong = {name: written(folder, f"{name}.rbt", f"Begin()\n{line}\nEnd()\n")
              for name, line in WRONG_LINES.items()}
     binary = folder / "binary.rbt"
@@ -272,6 +273,9 @@ def rows(folder):
         ("latency parol6 --target emulated: --seconds 2 --limit lost<1,skipped<1", "", 0,
          ["the board's timing field", "200 answered"]),
         ("latency kinovazed --target emulated: --seconds 3", "", 0, ["heartbeat period, mean"]),
+        (f"latency kinovazed --from {captures}/kinovazed/connection-reconnect-idle.jsonl", "", 0,
+         ["3 answered", "Initialize to Initialized", "left out"]),
+        ("latency morap --from - --json -", "#[a log]\n", 2, ["!no answer"]),
         ("latency parol6 --target emulated: --count 20 --hlog -", "", 0, ["Tag=corrected,"]),
         (f"run {examples}/outputs.rbt --target emulated: --unhomed", "", 0, ["Tracking"]),
         (f"run {examples}/outputs.rbt --target emulated: --unhomed --json", "", 0,

@@ -53,6 +53,8 @@ std::string_view words_of(Ending ending) noexcept {
 
 }  // namespace
 
+std::optional<Event> completion_of(Verb verb) noexcept { return row_of(verb).event; }
+
 std::string describe(const DriveEvent& event) {
   using Kind = DriveEvent::Kind;
   switch (event.kind) {

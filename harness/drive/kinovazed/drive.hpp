@@ -36,6 +36,9 @@ struct DriveOptions {
   Duration stick_watchdog = std::chrono::milliseconds{500};
 };
 
+/// What the server says when such a command is done; none: nothing.
+[[nodiscard]] std::optional<Event> completion_of(Verb verb) noexcept;
+
 using RequestId = std::uint32_t;
 
 /// How a command ended.

@@ -47,8 +47,8 @@ constexpr Room kRooms[] = {
      "harness/core harness/wire harness/capture harness/arm harness/link harness/timing "
      "harness/motion harness/drive harness/rig"},
     {"harness/latency",
-     "harness/core harness/wire harness/link harness/timing harness/report harness/drive "
-     "harness/rig"},
+     "harness/core harness/wire harness/capture harness/link harness/timing harness/report "
+     "harness/drive harness/rig"},
     {"emulators/faults", "harness/core harness/wire"},
     {"emulators/demo", "harness/core harness/wire emulators/faults"},
     {"emulators/i2c", "harness/core"},

@@ -121,7 +121,7 @@ TEST(LatencyJson, IsABaselineForTheNextRun) {
   EXPECT_EQ(baseline.median, 2ms);
   const auto compare = [&baseline](Duration delay) {
     const auto row = percentiles_of(run_of(delay).measured).front();
-    return compare_with(baseline, row.raw, row.interval, kLatencyConfidence).difference;
+    return compare_with(baseline, row.raw, row.interval.value(), kLatencyConfidence).difference;
   };
   EXPECT_EQ(compare(2ms), Difference::kNone);
   EXPECT_EQ(compare(2200us), Difference::kSlower);
