@@ -106,6 +106,15 @@ Outcome<ProbedLink> open_probe(const Device& device, const RigOptions& how) {
   });
 }
 
+Outcome<std::unique_ptr<Follower>> open_follower(const Device& device, const RigOptions& how) {
+  using Opened = Outcome<std::unique_ptr<Follower>>;
+  return with_rig(device, how, [&device](const auto& kind, auto rig) -> Opened {
+    if (kind.make_follower != nullptr) return kind.make_follower(std::move(rig));
+    return problem(ErrorCode::kUnsupported, std::string{device.name},
+                   "it has no loop that jitter could cost anything");
+  });
+}
+
 Outcome<std::unique_ptr<Bench>> open_bench(const Device& device, const RigOptions& how) {
   return with_rig(device, how, [&how](const auto& kind, auto rig) {
     return kind.make_bench(std::move(rig), how);

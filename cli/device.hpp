@@ -25,6 +25,7 @@
 #include "harness/console/watched.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/option.hpp"
+#include "harness/latency/follower.hpp"
 #include "harness/latency/probe.hpp"
 #include "harness/rig/attached.hpp"
 #include "harness/rig/real_target.hpp"
@@ -52,6 +53,9 @@ struct OnPort {
   /// How long it takes to answer is measured with that. `port` is only lent. Problems: it does not
   /// answer, or the port.
   Outcome<std::unique_ptr<Probe>> (*make_probe)(Port& port, const std::string& target){};
+  /// An emulated one is led along a way with that, to tell what jitter costs; none: nobody can
+  /// tell.
+  Outcome<std::unique_ptr<Follower>> (*make_follower)(Rig<Port> rig){};
 };
 
 struct OnStream : OnPort<StreamPort, HostedStream> {
@@ -196,6 +200,10 @@ struct ProbedLink {
   std::unique_ptr<Probe> probe;
 };
 [[nodiscard]] Outcome<ProbedLink> open_probe(const Device& device, const RigOptions& how);
+
+/// A joint of it that can be led along a way. Problems: as for `with_rig`, and `kUnsupported`.
+[[nodiscard]] Outcome<std::unique_ptr<Follower>> open_follower(const Device& device,
+                                                               const RigOptions& how);
 
 /// The conversation of the device's suite with a target.
 [[nodiscard]] Outcome<std::unique_ptr<Bench>> open_bench(const Device& device,

@@ -66,6 +66,9 @@ struct Options {
   std::string json;
   std::string html;
   std::string histogram_log;
+  bool has_cost = false;
+  std::optional<double> cost_limit;
+  std::uint64_t seed = 1;
 };
 
 constexpr double kUsualSeconds = 10;
@@ -242,6 +245,26 @@ Exit exit_of(const Report& report, const LatencyRun& run, const Signals& signals
   return report.count(Verdict::kInconclusive) > 0 ? Exit::kRig : Exit::kPassed;
 }
 
+/// A joint of the target, or of a usual one if that is not emulated.
+Outcome<std::unique_ptr<Follower>> open_follower(const Device& device, const Options& options) {
+  const auto& text = options.target.target;
+  return parse_target(text.starts_with("emulated:") ? text : "emulated:")
+      .and_then([&device](Target target) {
+        return cli::open_follower(device, {.target = std::move(target)});
+      });
+}
+
+/// What the delays would cost the device's loop, in virtual time.
+Outcome<void> add_cost(LatencyRun& run, const Device& device, const Options& options) {
+  if (!options.has_cost || run.measured.round_trips.count() == 0) return {};
+  JitterCostHow how{.limit = options.cost_limit, .seed = options.seed};
+  if (run.plan.period) how.rate = 1e9 / static_cast<double>(run.plan.period->count());
+  auto cost = cost_of(run.measured, [&] { return open_follower(device, options); }, how);
+  if (!cost) return tl::unexpected{cost.error()};
+  run.cost = *std::move(cost);
+  return {};
+}
+
 /// What is left to be known once it has ended.
 void finish(LatencyRun& run, const Wanted& wanted) {
   for (const auto& limit : wanted.limits) run.limits.push_back(check(limit, run.measured));
@@ -389,6 +412,10 @@ Exit latency(Devices devices, const Options& options) {
   }
   const auto wanted = wanted_of(options);
   if (!wanted) return report(wanted.error());
+  if (options.has_cost) {
+    const auto joint = open_follower(**found, options);
+    if (!joint) return report(joint.error());
+  }
   const auto files = open_outputs(
       {{"--json", options.json}, {"--html", options.html}, {"--hlog", options.histogram_log}});
   if (!files) return report(files.error());
@@ -401,6 +428,7 @@ Exit latency(Devices devices, const Options& options) {
   if (!ended) return report(ended.error());
   auto& run = ended->run;
   finish(run, *wanted);
+  if (const auto added = add_cost(run, **found, options); !added) return report(added.error());
 
   const auto result = report_of(run);
   const auto& [json, html, log] = *files;
@@ -464,6 +492,18 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
   command->add_option("--html", options->html, "also write a page with curves")->type_name("FILE");
   command->add_option("--hlog", options->histogram_log, "also write a log for HdrHistogram's tools")
       ->type_name("FILE");
+  auto* cost = command->add_flag("--cost", options->has_cost,
+                                 "also tell what such delays cost the loop of an emulated joint");
+  command
+      ->add_option("--cost-limit", options->cost_limit,
+                   "of its error, for the highest rate (default: twice that of steady delays)")
+      ->type_name("STEPS")
+      ->check(number(0, 1e9))
+      ->needs(cost);
+  command->add_option("--seed", options->seed, "of the delays that are drawn (default: 1)")
+      ->type_name("N")
+      ->transform(whole(0, std::uint64_t{1} << 32U))
+      ->needs(cost);
   auto* from = command->add_option("--from", options->from,
                                    "measure nothing: what a recording or a log of --hlog shows");
   from->type_name("FILE");

@@ -6,6 +6,7 @@
 #include "conformance/morap/suite.hpp"
 #include "emulators/morap/options.hpp"
 #include "harness/console/morap/console.hpp"
+#include "harness/latency/morap_follower.hpp"
 #include "harness/latency/morap_probe.hpp"
 #include "harness/rig/morap_judge.hpp"
 #include "harness/wire/morap/dissector.hpp"
@@ -21,7 +22,8 @@ cli::Device device() {
                               .make_bench = conformance::make_bench,
                               .open_console = console::open,
                               .watch = console::watch,
-                              .make_probe = latency::make_probe}},
+                              .make_probe = latency::make_probe,
+                              .make_follower = latency::make_follower}},
           .options = emulation::options,
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,

@@ -6,6 +6,7 @@
 #include "conformance/parol6/suite.hpp"
 #include "emulators/parol6/options.hpp"
 #include "harness/console/parol6/console.hpp"
+#include "harness/latency/parol6_follower.hpp"
 #include "harness/latency/parol6_probe.hpp"
 #include "harness/rig/parol6_judge.hpp"
 #include "harness/wire/parol6/dissector.hpp"
@@ -21,7 +22,8 @@ cli::Device device() {
                                  .make_bench = conformance::make_bench,
                                  .open_console = console::open,
                                  .watch = console::watch,
-                                 .make_probe = latency::make_probe},
+                                 .make_probe = latency::make_probe,
+                                 .make_follower = latency::make_follower},
                                 std::nullopt,
                                 UsbId{0x0483, 0x5740}},
           .options = emulation::options,

@@ -79,6 +79,31 @@ Json comparison_of(const std::optional<LatencyComparison>& comparison) {
   return json;
 }
 
+Json error_of(const TrackingError& error) {
+  return {{"p99", error.p99},
+          {"rms", error.rms},
+          {"most", error.most},
+          {"skipped_share", error.skipped}};
+}
+
+Json cost_of(const std::optional<JitterCost>& cost) {
+  if (!cost) return nullptr;
+  Json json{{"unit", cost->unit},
+            {"seed", cost->seed},
+            {"virtual_ns", cost->time.count()},
+            {"rate_hz", cost->rate},
+            {"p99_ns", cost->p99.count()},
+            {"steady", error_of(cost->steady)},
+            {"measured", error_of(cost->measured)},
+            {"limit", cost->limit},
+            {"highest_rate_hz", cost->highest_rate ? Json(*cost->highest_rate) : Json(nullptr)},
+            {"rates", Json::array()}};
+  for (const auto& [rate, error] : cost->rates) {
+    json["rates"].push_back({{"rate_hz", rate}, {"error", error_of(error)}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string to_latency_json(const LatencyRun& run) {
@@ -134,6 +159,7 @@ std::string to_latency_json(const LatencyRun& run) {
                               {"is_kept", verdict.is_kept}});
   }
   json["comparison"] = comparison_of(run.comparison);
+  json["cost"] = cost_of(run.cost);
   json["outliers"] = outliers_of(run);
   json["histogram"] = to_hdr_text(measured.round_trips);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -125,6 +125,32 @@ ReportSection figures_of(const LatencyRun& run) {
   return section;
 }
 
+ReportSection cost_section_of(const JitterCost& cost) {
+  const auto& unit = cost.unit;
+  ReportSection section{
+      .title = "What jitter costs",
+      .text = fmt::format(
+          "An emulated joint goes to and fro by {:g} set-points a second. At a p99 of {} its "
+          "tracking error grows from {:.1f} to {:.1f} {} (99 % of the time), against answers that "
+          "all take the median. {} Each figure rests on {:g} s of virtual time, seed {}; delays "
+          "are drawn independently, half of each on either way.",
+          cost.rate, text_of(cost.p99), cost.steady.p99, cost.measured.p99, unit,
+          cost.highest_rate ? fmt::format("The highest rate that keeps it below {:.1f} is {:g} Hz.",
+                                          cost.limit, *cost.highest_rate)
+                            : fmt::format("None of these rates keeps it below {:.1f}.", cost.limit),
+          std::chrono::duration<double>{cost.time}.count(), cost.seed),
+      .table = {.columns = {"set-points / s", fmt::format("error at 99 % / {}", unit), "rms",
+                            "most", "not sent in time"}}};
+  const auto add = [&section](const std::string& name, const TrackingError& error) {
+    section.table.rows.push_back(
+        {name, fmt::format("{:.1f}", error.p99), fmt::format("{:.1f}", error.rms),
+         fmt::format("{:.1f}", error.most), fmt::format("{:.2f} %", 100 * error.skipped)});
+  };
+  add(fmt::format("{:g}, all at the median", cost.rate), cost.steady);
+  for (const auto& [rate, error] : cost.rates) add(fmt::format("{:g}", rate), error);
+  return section;
+}
+
 std::string_view word_of(MeterEvent::Kind kind) {
   constexpr std::array<std::string_view, 5> kWords{"due", "sent", "came", "answered", "lost"};
   return kWords[static_cast<std::size_t>(kind)];
@@ -313,6 +339,7 @@ Report report_of(const LatencyRun& run) {
   if (!run.measured.trips.empty()) trips.plots.push_back(series_of(run.measured));
   report.sections = {std::move(trips), shares_section_of(run)};
   if (!run.figures.empty()) report.sections.push_back(figures_of(run));
+  if (run.cost) report.sections.push_back(cost_section_of(*run.cost));
   if (!run.measured.outliers.empty()) report.sections.push_back(worst_of(run));
   return report;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/latency/comparison.hpp"
+#include "harness/latency/jitter_cost.hpp"
 #include "harness/latency/limit.hpp"
 #include "harness/latency/meter.hpp"
 #include "harness/report/report.hpp"
@@ -39,6 +40,7 @@ struct LatencyRun {
   std::vector<Figure> figures;
   std::vector<LimitVerdict> limits;
   std::optional<LatencyComparison> comparison;
+  std::optional<JitterCost> cost;
   bool is_interrupted = false;
   std::vector<std::string> left_out;  ///< what a recording does not have
   bool is_recorded = false;           ///< by somebody, not measured now

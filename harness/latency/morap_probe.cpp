@@ -117,18 +117,24 @@ class ReadListener final : public Probe {
 
 }  // namespace
 
-Outcome<std::unique_ptr<Probe>> make_probe(BusPort& port, const std::string& target) {
+Outcome<BusAddress> first_node(BusPort& port, const std::string& target) {
   constexpr std::uint8_t kLast = 0x1F;
   drive::Master master{port};
   for (auto address = kNodeBaseAddress; address <= kLast; ++address) {
     if (address == pen::kAddress) continue;
     const auto code = master.poke({address});
-    if (code == drive::BusCode::kOk) return std::make_unique<AngleProbe>(BusAddress{address});
+    if (code == drive::BusCode::kOk) return BusAddress{address};
     if (code == drive::BusCode::kNoSuchAddress) continue;
     return problem(drive::error_of(code), target, std::string{drive::describe(code)});
   }
   return problem(ErrorCode::kTimedOut, target,
                  "no node answers at the addresses 10 to 1F: is the bus powered?");
+}
+
+Outcome<std::unique_ptr<Probe>> make_probe(BusPort& port, const std::string& target) {
+  return first_node(port, target).map([](BusAddress node) -> std::unique_ptr<Probe> {
+    return std::make_unique<AngleProbe>(node);
+  });
 }
 
 std::unique_ptr<Probe> make_listener() { return std::make_unique<ReadListener>(); }

@@ -9,6 +9,9 @@
 
 namespace armjig::morap::latency {
 
+/// The address of the first node that answers. Problems: as for `make_probe`.
+[[nodiscard]] Outcome<BusAddress> first_node(BusPort& port, const std::string& target);
+
 /// The angle of the first node that answers: a write of one byte, then a read of four. Problems:
 /// nobody answers (`kTimedOut`), trouble with the bus. `target` is for messages.
 [[nodiscard]] Outcome<std::unique_ptr<Probe>> make_probe(BusPort& port, const std::string& target);

@@ -88,7 +88,7 @@ const Inner kInner[] = {
     {"emulators/replay/(demo|kinovazed|morap|parol6)(_\\w+)?\\..*", "::replay"},
     {"emulators/sessions/(kinovazed|morap|parol6)\\..*", "::sessions"},
     {"harness/console/(\\w+)/.*", "::console"},
-    {"harness/latency/(kinovazed|morap|parol6)_probe\\..*", "::latency"},
+    {"harness/latency/(kinovazed|morap|parol6)_(?:probe|follower)\\..*", "::latency"},
     {"cli/devices/(\\w+)\\..*", ""},
     {"conformance/(\\w+)/host/.*", "::programs"},
     {"conformance/(\\w+)/(?!host/).*", "::conformance"},
