@@ -3,6 +3,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cerrno>
@@ -47,7 +48,14 @@ class TcpSession final : public SessionPort {
     while (socket_.is_open() && !was_reset_) {
       const auto size = ::recv(socket_.value(), into.data(), into.size(), 0);
       if (size > 0) return Received{Arrival::kData, static_cast<std::size_t>(size)};
-      if (size == 0) return Received{Arrival::kEnd, 0};
+      if (size == 0) {
+        // Said again, it takes time, or who waits for something else keeps a processor busy.
+        if (std::exchange(is_end_told_, true)) {
+          std::this_thread::sleep_for(
+              std::clamp(deadline - clock_.now(), Duration{}, kBetweenEnds));
+        }
+        return Received{Arrival::kEnd, 0};
+      }
       if (is_reset(errno)) {
         was_reset_ = true;
       } else if (errno == EAGAIN || errno == EINTR) {
@@ -99,13 +107,17 @@ class TcpSession final : public SessionPort {
     socket_.close();
     is_half_closed_ = false;
     was_reset_ = false;
+    is_end_told_ = false;
   }
+
+  static constexpr Duration kBetweenEnds = std::chrono::milliseconds{100};
 
   TcpAddress address_;
   Stopwatch clock_;
   Descriptor socket_;
   bool is_half_closed_ = false;
   bool was_reset_ = false;
+  bool is_end_told_ = false;  ///< of the server
 };
 
 class TcpServer final : public SessionSource {

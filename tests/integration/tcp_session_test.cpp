@@ -72,6 +72,14 @@ TEST_F(TcpSession, TellsAnEndFromAReset) {
   expect_arrival(Arrival::kEnd);
 }
 
+TEST_F(TcpSession, SaysTheEndAgainOnlyWhenTimeHasPassed) {
+  peer.close();
+  expect_arrival(Arrival::kEnd);
+  const auto deadline = session->now() + 20ms;
+  EXPECT_EQ(receive(20ms)->arrival, Arrival::kEnd);
+  EXPECT_GE(session->now(), deadline) << "or what is delayed is waited for with a busy processor";
+}
+
 TEST_F(TcpSession, TellsAResetFromAnEnd) {
   testing::close_with_reset(peer);
   expect_arrival(Arrival::kReset);
