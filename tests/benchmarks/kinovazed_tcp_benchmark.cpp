@@ -3,8 +3,6 @@
 // baselines are lines of the same length against bare loops that send each line back: one with a
 // write for every line, one with a write for all that came at once, which is as fast as it gets.
 #include <benchmark/benchmark.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -20,6 +18,7 @@
 #include "emulators/memory/hosted.hpp"
 #include "harness/link/descriptor.hpp"
 #include "harness/link/tcp_session.hpp"
+#include "tests/unit/support/link_ends.hpp"
 
 namespace armjig {
 namespace {
@@ -77,10 +76,9 @@ bool send_all(int socket, std::string_view text) {
 }
 
 /// Reads, cuts into lines, sends each back, until the client has gone.
-void echo_lines(int listener, Writes writes) {
-  const Descriptor client{::accept(listener, nullptr, nullptr)};
-  const int on = 1;  // what is measured is the echo, not Nagle's waiting
-  ::setsockopt(client.value(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+void echo_lines(const test::ListeningSocket& listener, Writes writes) {
+  // Without delay: what is measured is the echo, not Nagle's waiting.
+  const auto client = listener.accept();
   std::array<char, 16384> buffer;
   std::string out;
   for (;;) {
@@ -100,17 +98,9 @@ void echo_lines(int listener, Writes writes) {
 
 template <Writes writes>
 void line_echo(benchmark::State& state) {
-  const Descriptor listener{::socket(AF_INET, SOCK_STREAM, 0)};
-  sockaddr_in place{};
-  place.sin_family = AF_INET;
-  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof place;
-  auto* const address = reinterpret_cast<sockaddr*>(&place);
-  ::bind(listener.value(), address, size);
-  ::listen(listener.value(), 1);
-  ::getsockname(listener.value(), address, &size);
-  std::thread thread{[&listener] { echo_lines(listener.value(), writes); }};
-  ping(state, "127.0.0.1:" + std::to_string(ntohs(place.sin_port)), kReply, kReply.size());
+  const test::ListeningSocket listener;
+  std::thread thread{[&listener] { echo_lines(listener, writes); }};
+  ping(state, "127.0.0.1:" + std::to_string(listener.port()), kReply, kReply.size());
   thread.join();
 }
 BENCHMARK(line_echo<Writes::kEachLine>)->MeasureProcessCPUTime()->UseRealTime();

@@ -2,14 +2,8 @@
 // What measuring costs: round trips of `armjig latency`'s meter beside those of a bare write, poll
 // and read, in alternated rounds against one echo, over a pseudo-terminal and over TCP. And what
 // two rounds of the bare one differ by. Ratios are medians of the rounds'.
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): POSIX, posix_openpt
-#include <sys/socket.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,51 +20,13 @@
 #include "harness/rig/guarded_ports.hpp"
 #include "harness/timing/realtime.hpp"
 #include "harness/wire/demo/demo.hpp"
+#include "tests/unit/support/link_ends.hpp"
 
 namespace armjig {
 namespace {
 
 constexpr int kRounds = 11;
 constexpr std::size_t kTrips = 5'000;
-
-/// Two files of one link.
-struct Ends {
-  Descriptor near;
-  Descriptor far;
-};
-
-Ends make_tcp() {
-  const Descriptor listener{::socket(AF_INET, SOCK_STREAM, 0)};
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const any = reinterpret_cast<sockaddr*>(&address);
-  (void)::bind(listener.value(), any, size);
-  (void)::getsockname(listener.value(), any, &size);
-  (void)::listen(listener.value(), 1);
-  Ends ends{Descriptor{::socket(AF_INET, SOCK_STREAM, 0)}, Descriptor{}};
-  (void)::connect(ends.near.value(), any, size);
-  ends.far = Descriptor{::accept(listener.value(), nullptr, nullptr)};
-  (void)::fcntl(ends.near.value(), F_SETFL, O_NONBLOCK);
-  const int yes = 1;
-  for (const auto* const end : {&ends.near, &ends.far}) {
-    (void)::setsockopt(end->value(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  }
-  return ends;
-}
-
-Ends make_terminal() {
-  Descriptor master{::posix_openpt(O_RDWR | O_NOCTTY)};
-  (void)::grantpt(master.value());
-  (void)::unlockpt(master.value());
-  Descriptor slave{::open(::ptsname(master.value()), O_RDWR | O_NOCTTY | O_NONBLOCK)};
-  termios settings{};
-  ::tcgetattr(slave.value(), &settings);
-  ::cfmakeraw(&settings);
-  ::tcsetattr(slave.value(), TCSANOW, &settings);
-  return {std::move(slave), std::move(master)};
-}
 
 /// Until the other end is closed.
 void echo(int file) {
@@ -125,7 +81,7 @@ double middle(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-bool compare(std::string_view name, Ends ends, DescriptorStream::Put put) {
+bool compare(std::string_view name, test::LinkEnds ends, DescriptorStream::Put put) {
   const auto request = demo::encode(demo::Operation::kQuery);
   const auto near = ends.near.value();
   std::thread other{[file = ends.far.value()] {
@@ -157,7 +113,8 @@ bool compare(std::string_view name, Ends ends, DescriptorStream::Put put) {
 }  // namespace armjig
 
 int main() {
-  const bool is_terminal_met = armjig::compare("PTY", armjig::make_terminal(), armjig::write_all);
-  const bool is_tcp_met = armjig::compare("TCP", armjig::make_tcp(), armjig::send_all);
+  const bool is_terminal_met =
+      armjig::compare("PTY", armjig::test::make_terminal_ends(), armjig::write_all);
+  const bool is_tcp_met = armjig::compare("TCP", armjig::test::make_tcp_ends(), armjig::send_all);
   return is_terminal_met && is_tcp_met ? 0 : 1;
 }

@@ -3,16 +3,12 @@
 // kernel ends a process that does anything else there.
 #include "harness/latency/path.hpp"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): POSIX, posix_openpt
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -22,6 +18,7 @@
 #include "harness/rig/demo_judge.hpp"
 #include "harness/rig/guarded_ports.hpp"
 #include "tests/unit/support/allocations.hpp"
+#include "tests/unit/support/link_ends.hpp"
 
 namespace armjig {
 namespace {
@@ -56,31 +53,8 @@ bool allow_nothing_else() {
          ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
 }
 
-/// One file of a link, and its other end.
-struct Ends {
-  Descriptor near;
-  Descriptor far;
-};
-
-Ends make_socket() {
-  std::array<int, 2> ends{};
-  EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends.data()), 0);
-  return {Descriptor{ends[0]}, Descriptor{ends[1]}};
-}
-
-Ends make_terminal() {
-  Descriptor master{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)};
-  EXPECT_TRUE(::grantpt(master.value()) == 0 && ::unlockpt(master.value()) == 0);
-  Descriptor slave{::open(::ptsname(master.value()), O_RDWR | O_NOCTTY | O_NONBLOCK)};
-  termios settings{};
-  ::tcgetattr(slave.value(), &settings);
-  ::cfmakeraw(&settings);
-  ::tcsetattr(slave.value(), TCSANOW, &settings);
-  return {std::move(slave), std::move(master)};
-}
-
 /// In a process of its own: answers are there already, and rounds follow each other.
-int run_rounds(Ends ends) {
+int run_rounds(test::LinkEnds ends) {
   const std::array<std::byte, kRounds> answers{};
   const auto far = ends.far.value();
   const DescriptorStream::Put put = write_all;
@@ -109,7 +83,7 @@ int run_rounds(Ends ends) {
 }
 
 TEST(PathOnAFile, SendsNothingThatTheGuardHasNotAdmitted) {
-  auto ends = make_socket();
+  auto ends = test::make_socket_ends();
   const DescriptorStream::Put put = write_all;
   const auto port = GuardedStream::guard(
       std::make_unique<DescriptorStream>(std::move(ends.near), put), demo::rig::make_judge(), {});
@@ -122,7 +96,7 @@ TEST(PathOnAFile, SendsNothingThatTheGuardHasNotAdmitted) {
   EXPECT_EQ(::read(ends.far.value(), came.data(), came.size()), 2);
 }
 
-class MeasuredPath : public testing::TestWithParam<Ends (*)()> {};
+class MeasuredPath : public testing::TestWithParam<test::LinkEnds (*)()> {};
 
 TEST_P(MeasuredPath, OnlyPollsWritesAndReadsAndTakesNothingFromTheHeap) {
   auto ends = GetParam()();
@@ -137,7 +111,7 @@ TEST_P(MeasuredPath, OnlyPollsWritesAndReadsAndTakesNothingFromTheHeap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OnASocketAndATerminal, MeasuredPath,
-                         testing::Values(make_socket, make_terminal),
+                         testing::Values(test::make_socket_ends, test::make_terminal_ends),
                          [](const auto& one) { return one.index == 0 ? "Socket" : "Terminal"; });
 
 }  // namespace
