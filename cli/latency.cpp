@@ -19,6 +19,7 @@
 #include "cli/signals.hpp"
 #include "cli/target_options.hpp"
 #include "harness/capture/capture.hpp"
+#include "harness/core/number.hpp"
 #include "harness/files/user_file.hpp"
 #include "harness/latency/latency_run.hpp"
 #include "harness/latency/load.hpp"
@@ -51,6 +52,7 @@ struct Options {
   std::string device;
   TargetOptions target;
   std::string against;
+  std::string sweep;
   std::string from;
   std::string baseline;
   double rate = 100;
@@ -71,6 +73,8 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
+constexpr double kLeastRate = 0.1;
+constexpr double kMostRate = 20'000;
 constexpr double kUsualSeconds = 10;
 constexpr Duration kSlice = 1s;  ///< of two targets that are alternated
 constexpr std::uint64_t kMostSlices = 1'000'000;
@@ -131,6 +135,44 @@ std::optional<Problem> problem_of(const Options& options, const RigOptions& how)
     return Problem{ErrorCode::kBadValue, "--against", "say --seconds, for each of both"};
   }
   return std::nullopt;
+}
+
+/// What is told of one run: `rate=50`, and the options with that.
+struct Point {
+  std::string name;
+  Options options;
+};
+
+/// One for each value of `--sweep`; without it the only one.
+Outcome<std::vector<Point>> points_of(const Options& options) {
+  if (options.sweep.empty()) return std::vector{Point{{}, options}};
+  constexpr std::size_t kMostPoints = 20;
+  const auto wrong = [&options] {
+    return problem(ErrorCode::kBadValue, fmt::format("--sweep {}", options.sweep),
+                   "write rate=50,100,200 or burst=1,2,4, each once, up to 20");
+  };
+  const std::string_view text{options.sweep};
+  const auto sign = text.find('=');
+  const auto key = text.substr(0, sign);
+  if (sign == std::string_view::npos || (key != "rate" && key != "burst")) return wrong();
+  std::vector<Point> points;
+  for (auto rest = text.substr(sign + 1);; rest = rest.substr(rest.find(',') + 1)) {
+    const auto word = rest.substr(0, rest.find(','));
+    Point point{fmt::format("{}={}", key, word), options};
+    if (key == "rate") {
+      const auto rate = whole_text_as<double>(word);
+      if (!rate || !(*rate >= kLeastRate && *rate <= kMostRate)) return wrong();
+      point.options.rate = *rate;
+    } else {
+      const auto burst = whole_text_as<std::size_t>(word);
+      if (!burst || *burst < 1 || *burst > Meter::kMostBurst) return wrong();
+      point.options.burst = *burst;
+    }
+    const bool is_twice = std::ranges::find(points, point.name, &Point::name) != points.end();
+    if (is_twice || points.size() == kMostPoints) return wrong();
+    points.push_back(std::move(point));
+    if (rest.find(',') == std::string_view::npos) return points;
+  }
 }
 
 /// A target that is measured.
@@ -410,8 +452,10 @@ Exit latency(Devices devices, const Options& options) {
     if (!targets) return report(targets.error());
     hows = *std::move(targets);
   }
-  const auto wanted = wanted_of(options);
-  if (!wanted) return report(wanted.error());
+  const auto points = points_of(options);
+  if (!points) return report(points.error());
+  // What is wrong is said before files are opened.
+  if (const auto wanted = wanted_of(options); !wanted) return report(wanted.error());
   if (options.has_cost) {
     const auto joint = open_follower(**found, options);
     if (!joint) return report(joint.error());
@@ -421,23 +465,33 @@ Exit latency(Devices devices, const Options& options) {
   if (!files) return report(files.error());
 
   const Signals signals;
-  auto ended = options.from.empty() ? measure(**found, hows, options, *wanted, signals)
-                                    : read_run(devices, **found, options).map([](LatencyRun run) {
-                                        return Ended{std::move(run), std::nullopt};
-                                      });
-  if (!ended) return report(ended.error());
-  auto& run = ended->run;
-  finish(run, *wanted);
-  if (const auto added = add_cost(run, **found, options); !added) return report(added.error());
+  std::vector<LatencyRun> runs;
+  std::optional<Problem> failure;
+  for (const auto& point : *points) {
+    const auto wanted = wanted_of(point.options);
+    if (!wanted) return report(wanted.error());
+    auto ended = options.from.empty() ? measure(**found, hows, point.options, *wanted, signals)
+                                      : read_run(devices, **found, options).map([](LatencyRun run) {
+                                          return Ended{std::move(run), std::nullopt};
+                                        });
+    if (!ended) return report(ended.error());
+    auto& run = runs.emplace_back(std::move(ended->run));
+    run.name = point.name;
+    finish(run, *wanted);
+    if (const auto added = add_cost(run, **found, options); !added) return report(added.error());
+    failure = ended->failure;
+    if (failure || run.is_interrupted) break;
+  }
 
-  const auto result = report_of(run);
+  const bool is_one = options.sweep.empty();
+  const auto result = is_one ? report_of(runs.front()) : report_of(runs);
   const auto& [json, html, log] = *files;
-  if (json != nullptr) json->put(to_latency_json(run));
+  if (json != nullptr) json->put(is_one ? to_latency_json(runs.front()) : to_latency_json(runs));
   if (html != nullptr) html->put(to_html(result));
-  if (log != nullptr) log->put(to_latency_log(run));
+  if (log != nullptr) log->put(to_latency_log(runs.front()));
   fmt::print("{}", to_text(result));
-  if (ended->failure) return report(*ended->failure);
-  return exit_of(result, run, signals);
+  if (failure) return report(*failure);
+  return exit_of(result, runs.back(), signals);
 }
 
 }  // namespace
@@ -458,7 +512,7 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
       ->excludes(against);
   auto* rate = command->add_option("--rate", options->rate, "requests a second (default: 100)")
                    ->type_name("HZ")
-                   ->check(number(0.1, 20'000));
+                   ->check(number(kLeastRate, kMostRate));
   command
       ->add_flag("--closed-loop", options->is_closed_loop,
                  "the next request as soon as the answer is there")
@@ -504,12 +558,20 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
       ->type_name("N")
       ->transform(whole(0, std::uint64_t{1} << 32U))
       ->needs(cost);
+  auto* sweep =
+      command
+          ->add_option("--sweep", options->sweep, "a run for each: rate=50,100,200 or burst=1,2,4")
+          ->type_name("LIST")
+          ->excludes(against);
+  for (const auto* const other : {"--compare", "--closed-loop", "--hlog"}) {
+    sweep->excludes(command->get_option(other));
+  }
   auto* from = command->add_option("--from", options->from,
                                    "measure nothing: what a recording or a log of --hlog shows");
   from->type_name("FILE");
   for (const auto* const other :
        {"--target", "--allow", "--impair", "--wire-log", "--against", "--rate", "--closed-loop",
-        "--burst", "--count", "--seconds", "--load", "--priority", "--processor"}) {
+        "--burst", "--sweep", "--count", "--seconds", "--load", "--priority", "--processor"}) {
     from->excludes(command->get_option(other));
   }
   command->callback([options, devices, &action] {

@@ -104,9 +104,11 @@ Json cost_of(const std::optional<JitterCost>& cost) {
   return json;
 }
 
-}  // namespace
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
-std::string to_latency_json(const LatencyRun& run) {
+Json json_of(const LatencyRun& run) {
   const auto& measured = run.measured;
   Json json{{"schema", "armjig.latency/1"},
             {"device", run.device},
@@ -162,7 +164,19 @@ std::string to_latency_json(const LatencyRun& run) {
   json["cost"] = cost_of(run.cost);
   json["outliers"] = outliers_of(run);
   json["histogram"] = to_hdr_text(measured.round_trips);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json;
+}
+
+}  // namespace
+
+std::string to_latency_json(const LatencyRun& run) { return text_of(json_of(run)); }
+
+std::string to_latency_json(std::span<const LatencyRun> runs) {
+  Json json{{"schema", "armjig.latency-runs/1"}, {"runs", Json::array()}};
+  for (const auto& run : runs) {
+    json["runs"].push_back({{"name", run.name}, {"run", json_of(run)}});
+  }
+  return text_of(json);
 }
 
 }  // namespace armjig

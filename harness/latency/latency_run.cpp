@@ -183,17 +183,20 @@ ReportSection worst_of(const LatencyRun& run) {
   return section;
 }
 
-Plot curve_of(const Measured& measured) {
+Series curve_of(const LatencyHistogram& histogram, std::string name) {
+  Series series{.name = std::move(name)};
+  for (double beyond = 1; beyond <= static_cast<double>(histogram.count()); beyond *= 1.2) {
+    series.points.push_back({beyond, as_milliseconds(histogram.percentile(100 - 100 / beyond))});
+  }
+  return series;
+}
+
+Plot curves_of(const Measured& measured) {
   Plot plot{.title = "Percentiles",
             .x = {"one of so many is longer", Scale::kLog},
             .y = {"round trip / ms"}};
-  for (const auto* const histogram : {&measured.round_trips, &measured.corrected}) {
-    Series series{.name = histogram == &measured.corrected ? "corrected" : "as they were"};
-    for (double beyond = 1; beyond <= static_cast<double>(histogram->count()); beyond *= 1.2) {
-      series.points.push_back({beyond, as_milliseconds(histogram->percentile(100 - 100 / beyond))});
-    }
-    plot.series.push_back(std::move(series));
-  }
+  plot.series = {curve_of(measured.round_trips, "as they were"),
+                 curve_of(measured.corrected, "corrected")};
   return plot;
 }
 
@@ -335,12 +338,54 @@ Report report_of(const LatencyRun& run) {
   if (run.comparison) report.rows.push_back(row_of(*run.comparison));
   if (run.measured.round_trips.count() == 0) return report;
   auto trips = round_trips_of(run);
-  trips.plots = {curve_of(run.measured), bars_of(run.measured.round_trips)};
+  trips.plots = {curves_of(run.measured), bars_of(run.measured.round_trips)};
   if (!run.measured.trips.empty()) trips.plots.push_back(series_of(run.measured));
   report.sections = {std::move(trips), shares_section_of(run)};
   if (!run.figures.empty()) report.sections.push_back(figures_of(run));
   if (run.cost) report.sections.push_back(cost_section_of(*run.cost));
   if (!run.measured.outliers.empty()) report.sections.push_back(worst_of(run));
+  return report;
+}
+
+Report report_of(std::span<const LatencyRun> runs) {
+  const auto& first = runs.front();
+  Report report{
+      .title = fmt::format("Latency of {} at {}, {} runs", first.device, first.target, runs.size()),
+      .facts = report_of(first).facts,
+      .started = first.started};
+  // What is not the same in all of them is in the table.
+  std::erase_if(report.facts, [](const auto& fact) {
+    return fact.first == "rate" || fact.first == "requests" || fact.first == "time";
+  });
+  ReportSection together{.title = "Side by side",
+                         .table = {.columns = {"run", "50 %", "99 %", "most", "99 % corrected",
+                                               "sent", "lost", "not sent in time"}}};
+  Plot plot{.title = "Percentiles, as they were",
+            .x = {"one of so many is longer", Scale::kLog},
+            .y = {"round trip / ms"}};
+  for (const auto& run : runs) {
+    const auto& measured = run.measured;
+    together.table.rows.push_back(
+        {run.name, text_of(measured.round_trips.percentile(50)),
+         text_of(measured.round_trips.percentile(99)), text_of(measured.round_trips.max()),
+         text_of(measured.corrected.percentile(99)), std::to_string(measured.sent),
+         std::to_string(measured.lost), std::to_string(measured.skipped)});
+    plot.series.push_back(curve_of(measured.round_trips, run.name));
+  }
+  together.plots.push_back(std::move(plot));
+  report.sections.push_back(std::move(together));
+  for (const auto& run : runs) {
+    auto alone = report_of(run);
+    for (auto& row : alone.rows) {
+      row.name = fmt::format("{}.{}", row.name, run.name);
+      row.summary = fmt::format("{}: {}", run.name, row.summary);
+      report.rows.push_back(std::move(row));
+    }
+    for (auto& section : alone.sections) {
+      section.title = fmt::format("{}: {}", run.name, section.title);
+      report.sections.push_back(std::move(section));
+    }
+  }
   return report;
 }
 

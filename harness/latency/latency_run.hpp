@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct Witness {
 
 /// A run, with all that somebody needs to believe it.
 struct LatencyRun {
+  std::string name;  ///< among several: `rate=50`; empty: the only one
   std::string device;
   std::string target;
   std::string exchange;
@@ -77,6 +79,12 @@ inline constexpr double kLatencyConfidence = 0.99;
 
 /// For people: facts and verdicts first; then percentiles, shares and figures, the worst, plots.
 [[nodiscard]] Report report_of(const LatencyRun& run);
+
+/// Several runs side by side, then each by itself. Requires some.
+[[nodiscard]] Report report_of(std::span<const LatencyRun> runs);
+
+/// One JSON object of docs/schemas/latency-runs.schema.json, "armjig.latency-runs/1".
+[[nodiscard]] std::string to_latency_json(std::span<const LatencyRun> runs);
 
 /// One JSON object of docs/schemas/latency.schema.json, "armjig.latency/1".
 [[nodiscard]] std::string to_latency_json(const LatencyRun& run);

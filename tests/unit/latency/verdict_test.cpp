@@ -7,6 +7,7 @@
 #include "harness/link/memory_stream.hpp"
 #include "harness/timing/histogram_log.hpp"
 #include "tests/unit/latency/delayed_echo.hpp"
+#include "tests/unit/latency/slices.hpp"
 #include "tests/unit/report/validity.hpp"
 #include "tests/unit/support/bytes.hpp"
 
@@ -78,20 +79,10 @@ TEST(LoadPlan, IsReadOrRefused) {
 
 std::vector<Slice> slices_of(std::uint64_t seed, double slower, Duration added) {
   test::Dice dice{seed};
-  MemoryStream<test::DelayedEcho> port{test::DelayedEcho{[&](auto) {
+  return test::slices_of(60, [&](auto) {
     const auto delay = static_cast<double>(dice.between(800'000, 1'200'000)) * slower;
     return Duration{static_cast<Duration::rep>(delay)} + added;
-  }}};
-  test::EchoProbe probe;
-  const auto path = path_through(port);
-  Meter meter{*path, probe, {}, [] { return false; }};
-  std::vector<Slice> slices;
-  for (int i = 0; i < 60; ++i) {
-    const auto before = meter.measured().trips.size();
-    EXPECT_TRUE(meter.run({.time = 1s}).value());
-    slices.push_back(slice_of(std::span{meter.measured().trips}.subspan(before)));
-  }
-  return slices;
+  });
 }
 
 TEST(Against, FlagsATenthAndTwentyMicrosecondsMoreAndNotTheSame) {
@@ -135,7 +126,7 @@ TEST(LatencyJson, IsValidAgainstItsSchema) {
   const std::vector<Slice> slices(12, Slice{1ms, 1ms});
   run.comparison = compare_alternated(slices, slices, 1);
   EXPECT_TRUE(test::is_valid_json(to_latency_json(run), "docs/schemas/latency.schema.json"));
-  EXPECT_TRUE(test::is_valid_json(to_latency_json({}), "docs/schemas/latency.schema.json"));
+  EXPECT_TRUE(test::is_valid_json(to_latency_json(LatencyRun{}), "docs/schemas/latency.schema.json"));
   run.started = std::chrono::sys_seconds{};
   run.witness.emplace();
   run.privileges = {{"memory", true, "locked"}};
@@ -178,6 +169,19 @@ TEST(LatencyReport, HasTheVerdictInItsFirstLines) {
   EXPECT_LT(text.find("FAIL"), text.find("Round trips"));
   EXPECT_THAT(text, HasSubstr("2.000 ms"));
   EXPECT_EQ(conclusion_of(report_of(run)), Conclusion::kFindings);
+}
+
+TEST(LatencyReport, HasSeveralRunsSideBySide) {
+  std::vector<LatencyRun> runs{run_of(2ms), run_of(3ms)};
+  runs[0].name = "rate=50";
+  runs[1].name = "rate=100";
+  runs[1].limits = {check(parse_limits("p99<1ms").value().front(), runs[1].measured)};
+  const auto report = report_of(runs);
+  EXPECT_EQ(report.sections.front().table.rows.size(), 2U);
+  EXPECT_EQ(report.sections.front().plots.front().series.size(), 2U);
+  EXPECT_EQ(report.rows.front().name, "limit.p99<1ms.rate=100");
+  EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
+  EXPECT_TRUE(test::is_valid_json(to_latency_json(runs), "docs/schemas/latency-runs.schema.json"));
 }
 
 }  // namespace
