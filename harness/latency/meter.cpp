@@ -52,6 +52,10 @@ Result<bool> Meter::run(const Until& until) {
       if (!done) break;
       if (path_.now() < due) continue;  // somebody may want an end
       const auto cycle = schedule->begin(path_.now());
+      if (cycle.deadline > end) {  // of those that passed by, the first ones were still wanted
+        book_.skip(static_cast<std::uint64_t>((end - due) / *plan_.period) + 1);
+        break;
+      }
       deadline = cycle.deadline;
       book_.skip(cycle.skipped);
     }

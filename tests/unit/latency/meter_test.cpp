@@ -137,6 +137,15 @@ TEST(Meter, EndsWhenSomebodyWantsItAndKeepsWhatItHas) {
   EXPECT_GT(meter.measured().round_trips.count(), 10U);
 }
 
+TEST(Meter, CountsNoDeadlineAfterItsEnd) {
+  // The ninth answer comes 40 ms after the last of ten deadlines.
+  Jig jig{[](auto n) { return n == 8 ? 50ms : 1ms; }};
+  Meter meter{*jig.path, jig.probe, {}, never};
+  EXPECT_TRUE(meter.run({.time = 100ms}).value());
+  EXPECT_EQ(meter.measured().sent, 9U);
+  EXPECT_EQ(meter.measured().skipped, 1U);
+}
+
 TEST(Meter, EndsAfterTheTimeThatWasGiven) {
   Jig jig{[](auto) { return 1ms; }};
   Meter meter{*jig.path, jig.probe, {}, never};
