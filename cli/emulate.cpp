@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/capture_options.hpp"
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
 #include "cli/device_inputs.hpp"
@@ -31,6 +32,7 @@ constexpr auto kHelp =
     "  armjig emulate DEVICE --tcp 0 --pty --json   both, any free port, for scripts\n"
     "  armjig emulate DEVICE --set fault=NAME       a faulty one; 'conformance mutants' has names\n"
     "  armjig emulate DEVICE --check                tells what the client program does wrong\n"
+    "  armjig emulate DEVICE --capture x.pcapng     records what passes, for Wireshark\n"
     "\n"
     "Lines on standard input do to the device what no client can, such as 'estop 0'; 'help' lists\n"
     "them.\n"
@@ -51,6 +53,7 @@ struct Options {
   double speed = 1;
   bool wants_json = false;
   bool wants_check = false;
+  CaptureOptions capture;
   ReportFiles files;
   std::string colour;
 };
@@ -114,6 +117,15 @@ Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) 
   return options;
 }
 
+/// As `--target` would have them.
+std::string target_of(const DeviceOptions& settings) {
+  std::string text{"emulated:"};
+  for (const auto& [name, value] : settings) {
+    text += fmt::format("{}{}={}", text.ends_with(':') ? '?' : '&', name, value);
+  }
+  return text;
+}
+
 /// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
 constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
 
@@ -146,13 +158,12 @@ Outcome<void> host(AnyHosted hosted, const HostOptions& how, const Options& opti
 }
 
 Outcome<void> serve(std::unique_ptr<HostedStream> hosted, const OnStream& /*kind*/,
-                    const Options& options, ProgramCheck* check) {
-  if (check != nullptr) hosted = check->watch(std::move(hosted));
+                    const Options& options) {
   return host(std::move(hosted), host_options(options), options);
 }
 
 Outcome<void> serve(std::unique_ptr<HostedServer> hosted, const OnServer& kind,
-                    const Options& options, ProgramCheck* check) {
+                    const Options& options) {
   if (options.wants_pty || !options.pty.link.empty()) {
     return problem(ErrorCode::kUnsupported, options.device,
                    "it is a TCP server and has no pseudo-terminal; leave out --pty, --link");
@@ -161,7 +172,6 @@ Outcome<void> serve(std::unique_ptr<HostedServer> hosted, const OnServer& kind,
   how.pty.reset();
   how.tcp = options.tcp;
   if (!options.wants_tcp) how.tcp->port = kind.tcp_port;
-  if (check != nullptr) hosted = check->watch(std::move(hosted));
   return host(std::move(hosted), how, options);
 }
 
@@ -175,13 +185,12 @@ sigset_t block_signals() {
 }
 
 Outcome<void> serve(std::unique_ptr<HostedBus> hosted, const OnBus& /*kind*/,
-                    const Options& options, ProgramCheck* check) {
+                    const Options& options) {
   if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1) {
     return problem(ErrorCode::kUnsupported, options.device,
                    "a bus takes --set, --bus, --json and --check, and no other option");
   }
   const auto signals = block_signals();
-  if (check != nullptr) hosted = check->watch(std::move(hosted));
   const auto i2c = VirtualI2c::open(std::move(hosted), options.bus);
   if (!i2c) return tl::unexpected{i2c.error()};
   announce(options, {"i2c:" + i2c->path()}, i2c->environment());
@@ -208,11 +217,19 @@ Exit emulate(Devices devices, const Options& options) {
   }
   const auto files = ReportOutputs::open(options.files, options.wants_json ? "--json" : "");
   if (!files) return report(files.error());
+  const auto file = open_capture_file("--capture", options.capture);
+  if (!file) return report(file.error());
+  // Only real time can be told as a time of day.
+  const auto epoch_ns = options.speed == 1 ? epoch_of({}) : 0;
+  auto capture = HostedCapture::open(*file, device, target_of(*settings), epoch_ns);
+  if (!capture) return report(capture.error());
   const auto served = std::visit(
       [&](const auto& kind) -> Outcome<void> {
-        auto hosted = cli::emulate(kind, *settings, options.device);
-        if (!hosted) return tl::unexpected{hosted.error()};
-        return serve(*std::move(hosted), kind, options, check.get());
+        auto emulated = cli::emulate(kind, *settings, options.device);
+        if (!emulated) return tl::unexpected{emulated.error()};
+        auto hosted = capture->watch(*std::move(emulated));
+        if (check) hosted = check->watch(std::move(hosted));
+        return serve(std::move(hosted), kind, options);
       },
       device.port);
   if (!served) return report(served.error());
@@ -258,6 +275,7 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
       ->transform(whole(0, 255));
   command->add_flag("--json", options->wants_json,
                     "say where it listens as one line of JSON; the report of --check too");
+  add_capture_options(*command, options->capture);
   add_check(*command, *options);
   command->callback([options, tcp, devices, &action] {
     options->wants_tcp = tcp->count() > 0;

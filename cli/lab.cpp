@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/capture_options.hpp"
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
 #include "cli/program_judge.hpp"
@@ -48,6 +49,7 @@ struct Options {
   std::string nodes;
   int number = 1;
   bool wants_check = false;
+  CaptureOptions capture;
   ReportFiles files;
   std::string colour;
   std::vector<std::string> program;
@@ -93,7 +95,12 @@ Exit exec(Devices devices, const Options& options) {
   }
   const auto files = ReportOutputs::open(options.files, "PROGRAM");
   if (!files) return report(files.error());
-  auto hosted = *std::move(bus);
+  const auto file = open_capture_file("--capture", options.capture);
+  if (!file) return report(file.error());
+  auto capture =
+      HostedCapture::open(*file, **device, "emulated:?file=" + options.nodes, epoch_of({}));
+  if (!capture) return report(capture.error());
+  auto hosted = capture->watch(*std::move(bus));
   if (check) hosted = check->watch(std::move(hosted));
   const auto i2c = VirtualI2c::open(std::move(hosted), options.number);
   if (!i2c) return report(i2c.error());
@@ -115,6 +122,7 @@ void add_lab(CLI::App& app, Devices devices, Action& action) {
   command->add_option("--bus", options->number, "its number, 0 to 255 (default: 1)")
       ->type_name("N")
       ->transform(whole(0, 255));
+  add_capture_options(*command, options->capture);
   auto* check = command->add_flag("--check", options->wants_check, "judge the program");
   for (auto* file : add_report_files(*command, options->files)) file->needs(check);
   add_colour_option(*command, options->colour);

@@ -439,7 +439,7 @@ Outcome<std::vector<RigOptions>> targets_of(const Options& options) {
   }
   hows.push_back(hows[0]);
   hows.back().target = *std::move(other);
-  hows.back().wire_log.reset();
+  hows.back().capture = {};
   return hows;
 }
 

@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include "cli/outputs.hpp"
-
 namespace armjig::cli {
 
 void add_target_options(CLI::App& app, TargetOptions& options) {
@@ -24,8 +22,7 @@ void add_link_options(CLI::App& app, TargetOptions& options) {
   app.add_option("--impair", options.impair,
                  "make the link bad, as in loss=0.1%,delay=normal(2ms,1ms),split=random,seed=7")
       ->type_name("SPEC");
-  app.add_option("--wire-log", options.wire_log, "write every byte that passes to this file")
-      ->type_name("FILE");
+  add_capture_options(app, options.capture);
 }
 
 Outcome<RigOptions> parse_target_options(const TargetOptions& options) {
@@ -45,9 +42,9 @@ Outcome<RigOptions> parse_target_options(const TargetOptions& options) {
     if (!impairment) return tl::unexpected{impairment.error()};
     rig.impairment = *impairment;
   }
-  auto log = open_output("--wire-log", options.wire_log, OutputFile::Kind::kGrowing);
-  if (!log) return tl::unexpected{log.error()};
-  rig.wire_log = *std::move(log);
+  auto capture = open_capture_file("--capture", options.capture);
+  if (!capture) return tl::unexpected{capture.error()};
+  rig.capture = *std::move(capture);
   return rig;
 }
 

@@ -14,6 +14,7 @@
 #include "conformance/requirement.hpp"
 #include "conformance/wording.hpp"
 #include "harness/core/bytes.hpp"
+#include "harness/core/overhearer.hpp"
 #include "harness/core/time.hpp"
 
 namespace armjig {
@@ -63,23 +64,6 @@ class Complain {
   Take take_;
   Occasion occasion_;
   std::optional<Timing> timing_;
-};
-
-/// Something on one of the connections of a server.
-struct ConnectionEvent {
-  enum class Kind : std::uint8_t {
-    kBegun,
-    kToServer,    ///< `bytes`, as they came
-    kFromServer,  ///< `bytes`
-    kHalfClosed,  ///< the client sends no more
-    kClosed,      ///< by the client
-    kReset,       ///< by the client
-    kDropped,     ///< ended in any way by the server
-  };
-  Instant time{};
-  std::uint32_t connection{};  ///< numbered in the order in which they come
-  Kind kind{};
-  Bytes bytes;
 };
 
 /// Judges the program at the other end of a device's link by what passes both ways, without any

@@ -8,6 +8,8 @@
 #include "cli/outputs.hpp"
 #include "cli/parol6/commands.hpp"
 #include "cli/parol6/script_file.hpp"
+#include "harness/capture/capture.hpp"
+#include "harness/capture/trace.hpp"
 #include "harness/report/report.hpp"
 #include "harness/script/check.hpp"
 #include "harness/script/plan_output.hpp"
@@ -22,7 +24,7 @@ constexpr auto kHelp =
     "  armjig plan pick.rbt                              its moves as a table\n"
     "  armjig plan pick.rbt --html plan.html             curves, path, and the arm in motion\n"
     "  armjig plan pick.rbt --csv plan.csv               every set-point\n"
-    "  armjig plan pick.rbt --trace plan.jsonl           every byte, as a recording\n"
+    "  armjig plan pick.rbt --capture plan.pcapng        every byte, as a recording\n"
     "\n"
     "A program that ends with Loop() is planned for one pass, --loops wants more. FILE of --csv "
     "and\n"
@@ -37,16 +39,34 @@ struct Options {
   std::string csv;
   std::string json;
   std::string html;
-  std::string trace;
+  std::string capture;
 };
+
+/// A recording of what is sent on one stream, in the other format if that is wanted.
+std::string as_capture(std::string lines, CaptureFormat format) {
+  const auto trace = parse_trace("plan", lines);
+  if (format == CaptureFormat::kLines || !trace) return lines;
+  const auto writer = make_capture_writer(format);
+  std::string text;
+  (void)writer->begin({trace->header, trace->device}, text);
+  const CaptureLink link{trace->device, trace->device, LinkKind::kStream};
+  for (const auto& event : trace->events) {
+    CaptureRecord record{.time = event.time, .link = &link};
+    record.bytes = event.bytes;
+    (void)writer->add(record, {}, text);
+  }
+  return text;
+}
 
 Exit plan(const Options& options) {
   const auto planning = parse_planning(options.planning);
   if (!planning) return report(planning.error());
+  const auto format = capture_format_of(options.capture);
+  if (!format) return report(format.error());
   const auto files = open_outputs({{"--csv", options.csv},
                                    {"--json", options.json},
                                    {"--html", options.html},
-                                   {"--trace", options.trace}});
+                                   {"--capture", options.capture}});
   if (!files) return report(files.error());
   const auto program = read_script(options.script);
   if (!program) return program.error();
@@ -56,11 +76,11 @@ Exit plan(const Options& options) {
     return Exit::kUsage;
   }
   const auto& file = options.script.file;
-  const auto& [csv, json, html, trace] = *files;
+  const auto& [csv, json, html, capture] = *files;
   if (csv) csv->put(to_csv(*program, *schedule));
   if (json) json->put(to_json(*program, *schedule, file));
   if (html) html->put(to_html(to_report(*program, *schedule, file)));
-  if (trace) trace->put(to_trace(*schedule, file));
+  if (capture) capture->put(as_capture(to_trace(*schedule, file), *format));
   const bool has_table = std::ranges::none_of(
       *files, [](const Output& one) { return one && one->is_standard_output(); });
   if (has_table) {
@@ -84,7 +104,8 @@ void add_plan(CLI::App& app, const Device& /*device*/, Action& action) {
   add_output("--csv", options->csv, "write a line for each frame");
   add_output("--json", options->json, "write it as armjig.plan/1");
   add_output("--html", options->html, "write a page that needs no network");
-  add_output("--trace", options->trace, "write the bytes to the device as golden-trace/1");
+  add_output("--capture", options->capture,
+             "write the bytes to the device to this file: .pcapng, or .jsonl and '-' for a text");
   command->callback([options, &action] { action = [options] { return plan(*options); }; });
 }
 

@@ -13,6 +13,7 @@
 #include "harness/capture/pcapng.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/core/nesting.hpp"
+#include "harness/core/overhearer.hpp"
 #include "harness/files/user_file.hpp"
 #include "harness/wire/dissector.hpp"
 
@@ -279,14 +280,11 @@ Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& pa
 
 std::vector<std::byte> bus_message_of(const TraceEvent& event) {
   const bool is_read = event.dir == "read";
-  const bool is_there = (is_read || event.dir == "write") && event.text.starts_with('A');
-  if (!is_there) return {};
-  std::vector<std::byte> message{static_cast<std::byte>(event.id << 1U | (is_read ? 1U : 0U))};
-  for (std::size_t i = 0; i < event.bytes.size(); ++i) {
-    const bool is_taken = is_read || (i + 1 < event.text.size() && event.text[i + 1] == 'A');
-    if (is_taken) message.push_back(event.bytes[i]);
-  }
-  return message;
+  if (!is_read && event.dir != "write") return {};
+  return acknowledged({.address = static_cast<std::uint8_t>(event.id),
+                       .is_read = is_read,
+                       .bytes = event.bytes,
+                       .acks = event.text});
 }
 
 std::vector<std::byte> bus_message_of(const CaptureRecord& record) {

@@ -157,6 +157,31 @@ Outcome<void> OutputFile::put(std::string_view content) {
   return {};
 }
 
+Outcome<void> OutputFile::rotate(int files) {
+  if (!failure_) {
+    if (const int error = move_aside(files); error != 0)
+      failure_ = problem_of_writing(path_, error);
+  }
+  if (failure_) return tl::unexpected{*failure_};
+  return {};
+}
+
+int OutputFile::move_aside(int files) {
+  const fs::path path{target_};
+  const auto numbered = [&path](int number) {
+    const auto name = number == 0 ? path.filename().string()
+                                  : fmt::format("{}.{}{}", path.stem().string(), number,
+                                                path.extension().string());
+    return path.parent_path() / name;
+  };
+  for (int number = files - 1; number > 0; --number) {
+    const int error = error_of(::rename(numbered(number - 1).c_str(), numbered(number).c_str()));
+    if (error != 0 && error != ENOENT) return error;
+  }
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  return 0;
+}
+
 int OutputFile::write_whole(std::string_view content) {
   std::string name;
   const int file = create_beside(target_, name);

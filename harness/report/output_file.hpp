@@ -38,6 +38,13 @@ class OutputFile {
   /// `kDisconnected` if the reader has gone, or else `kCannotWrite`.
   Outcome<void> put(std::string_view content);
 
+  /// Begins a new file at the same path; the one that was there is kept beside it, as
+  /// NAME.1.ENDING, the one before as NAME.2.ENDING, and so on, `files` with the new one. Requires
+  /// `can_rotate` and `files > 0`. Problems: as for `put`.
+  Outcome<void> rotate(int files);
+  /// Whether it is a file that grows, and has a name of its own.
+  [[nodiscard]] bool can_rotate() const noexcept { return is_regular_ && kind_ == Kind::kGrowing; }
+
   /// The first problem of `put`; none so far.
   [[nodiscard]] const std::optional<Problem>& failure() const noexcept { return failure_; }
   [[nodiscard]] bool is_standard_output() const noexcept;
@@ -52,6 +59,7 @@ class OutputFile {
   [[nodiscard]] int probe();
   [[nodiscard]] int write_whole(std::string_view content);
   [[nodiscard]] int append(std::string_view content);
+  [[nodiscard]] int move_aside(int files);
 
   std::string path_;    ///< as it was said
   std::string target_;  ///< after all links

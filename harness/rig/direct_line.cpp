@@ -19,7 +19,7 @@ std::optional<DirectLine> line_of(Port& port) {
 }  // namespace
 
 std::optional<DirectLine> direct_line(StreamPort& port, const RigOptions& options) {
-  if (options.wire_log != nullptr || options.impairment) return std::nullopt;
+  if (options.capture.file != nullptr || options.impairment) return std::nullopt;
   if (auto* const connection = dynamic_cast<SessionStream*>(&port)) {
     return line_of<GuardedSession>(connection->session());
   }

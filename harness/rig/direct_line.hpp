@@ -16,7 +16,7 @@ struct DirectLine {
   Guard* guard{};
 };
 
-/// None where something is between that has to see the bytes, or no file: a wire log, impairments,
+/// None where something is between that has to see the bytes, or no file: a recording, impairments,
 /// a bus, a device in memory. `port` was opened with `options`.
 [[nodiscard]] std::optional<DirectLine> direct_line(StreamPort& port, const RigOptions& options);
 

@@ -3,23 +3,11 @@
 
 #include <utility>
 
-#include "harness/capture/trace.hpp"
-#include "harness/core/hex.hpp"
-
 namespace armjig {
 namespace {
 
 using Keys = WireLog::Keys;
-
-const WireLog::Key kWithoutStop{"stop", false};
-
-WireLog::Key failed(ErrorCode code) { return {"error", std::string{describe(code)}}; }
-
-Keys outcome_of(const Result<Transfer>& result) {
-  if (!result) return {failed(result.error().code)};
-  if (*result == Transfer::kDone) return {};
-  return {{"refused", *result == Transfer::kAddressRefused ? "address" : "byte"}};
-}
+using Ending = BusPart::Ending;
 
 /// What is known of the answers to a message of a transaction with so many.
 std::string acks_of(const BusMessage& message, const Result<Transfer>& result, std::size_t count) {
@@ -32,18 +20,18 @@ std::string acks_of(const BusMessage& message, const Result<Transfer>& result, s
 }  // namespace
 
 LoggedStream::LoggedStream(std::unique_ptr<StreamPort> port, std::shared_ptr<WireLog> log)
-    : StreamAround{std::move(port)}, talk_{std::move(log)} {}
+    : StreamAround{std::move(port)}, talk_{std::move(log), LinkKind::kStream} {}
 
 Result<void> LoggedStream::write(Bytes bytes) {
   const auto written = inner().write(bytes);
-  if (written) talk_.add_bytes(now(), {}, Direction::kToDevice, bytes);
+  if (written) talk_.add(now(), Direction::kToDevice, bytes);
   return written;
 }
 
 Result<std::size_t> LoggedStream::read(std::span<std::byte> into, Instant deadline) {
   const auto size = inner().read(into, deadline);
   if (size && *size > 0) {
-    talk_.add_bytes(now(), {}, Direction::kFromDevice, into.first(*size));
+    talk_.add(now(), Direction::kFromDevice, into.first(*size));
   }
   return size;
 }
@@ -64,7 +52,7 @@ Result<void> LoggedSession::connect(Instant deadline) {
   if (!connected && !is_refused) return connected;
   connection_ = log_->next_connection();
   is_open_ = !is_refused;
-  talk_.emplace(log_);
+  talk_.emplace(log_, LinkKind::kSession, connection_);
   write_border("connect", is_refused ? "refused" : "ok");
   return connected;
 }
@@ -108,13 +96,11 @@ void LoggedSession::write_end(std::string_view how) {
 }
 
 void LoggedSession::write_border(std::string_view direction, std::string_view how) {
-  log_->add(time(), {{"dir", std::string{direction}},
-                     {"conn", std::int64_t{connection_}},
-                     {"text", std::string{how}}});
+  log_->add_border(time(), connection_, direction, how);
 }
 
 void LoggedSession::write_bytes(Direction direction, Bytes bytes) {
-  talk_->add_bytes(time(), {{"conn", std::int64_t{connection_}}}, direction, bytes);
+  talk_->add(time(), direction, bytes);
 }
 
 LoggedSource::LoggedSource(std::unique_ptr<SessionSource> inner, std::shared_ptr<WireLog> log)
@@ -132,39 +118,39 @@ bool LoggedSource::touch(std::string_view input, std::int64_t value) {
 }
 
 LoggedBus::LoggedBus(std::unique_ptr<BusPort> port, std::shared_ptr<WireLog> log)
-    : BusAround{std::move(port)}, talk_{std::move(log)} {}
+    : BusAround{std::move(port)}, talk_{std::move(log), LinkKind::kBus} {}
 
-LoggedBus::~LoggedBus() { end_part({kWithoutStop}); }
+LoggedBus::~LoggedBus() { end_part(Ending::kNextStart); }
 
 Result<Transfer> LoggedBus::transfer(std::span<const BusMessage> messages) {
   if (has_operations()) return BusPort::transfer(messages);
   const auto begin = now();
   const auto result = inner().transfer(messages);
+  Keys refused;
+  if (result && *result != Transfer::kDone) {
+    refused.push_back({"refused", *result == Transfer::kAddressRefused ? "address" : "byte"});
+  }
   for (const auto& message : messages) {
-    auto outcome = outcome_of(result);
-    if (&message != &messages.back()) outcome.push_back(kWithoutStop);
     const bool was_read = result && *result == Transfer::kDone;
     const auto bytes = message.access == Access::kWrite ? message.write
                        : was_read                       ? Bytes{message.read}
                                                         : Bytes{};
-    note({begin,
-          message.address,
-          message.access,
-          {bytes.begin(), bytes.end()},
-          acks_of(message, result, messages.size())},
-         outcome);
+    Part part{begin, message.address, message.access, {bytes.begin(), bytes.end()}};
+    part.acks = acks_of(message, result, messages.size());
+    note(part, &message == &messages.back() ? Ending::kStop : Ending::kNextStart,
+         result ? std::nullopt : std::optional{result.error().code}, refused);
   }
   return result;
 }
 
 Result<Ack> LoggedBus::start(BusAddress address, Access access) {
-  end_part({kWithoutStop});
+  end_part(Ending::kNextStart);
   part_ = Part{.begin = now(), .address = address, .access = access};
   const auto reply = inner().start(address, access);
   if (reply) {
     part_->acks += *reply == Ack::kAck ? 'A' : 'N';
   } else {
-    end_part({failed(reply.error().code)});
+    end_part(Ending::kStop, reply.error().code);
   }
   return reply;
 }
@@ -172,7 +158,7 @@ Result<Ack> LoggedBus::start(BusAddress address, Access access) {
 Result<Ack> LoggedBus::write(std::byte byte) {
   const auto reply = inner().write(byte);
   if (!reply) {
-    end_part({failed(reply.error().code)});
+    end_part(Ending::kStop, reply.error().code);
   } else if (part_) {
     part_->bytes.push_back(byte);
     part_->acks += *reply == Ack::kAck ? 'A' : 'N';
@@ -183,7 +169,7 @@ Result<Ack> LoggedBus::write(std::byte byte) {
 Result<std::byte> LoggedBus::read(Ack reply) {
   const auto byte = inner().read(reply);
   if (!byte) {
-    end_part({failed(byte.error().code)});
+    end_part(Ending::kStop, byte.error().code);
   } else if (part_) {
     part_->bytes.push_back(*byte);
   }
@@ -192,45 +178,42 @@ Result<std::byte> LoggedBus::read(Ack reply) {
 
 Result<void> LoggedBus::stop() {
   const auto stopped = inner().stop();
-  end_part(stopped ? Keys{} : Keys{failed(stopped.error().code)});
+  end_part(Ending::kStop, stopped ? std::nullopt : std::optional{stopped.error().code});
   return stopped;
 }
 
 Result<void> LoggedBus::recover() {
-  end_part({kWithoutStop});
+  end_part(Ending::kNextStart);
   const auto begin = now();
   const auto recovered = inner().recover();
   Keys keys{{"op", "recover"}};
-  if (!recovered) keys.push_back(failed(recovered.error().code));
-  talk_.log().add(begin, keys);
+  if (!recovered) keys.push_back({"error", std::string{describe(recovered.error().code)}});
+  talk_.log().add_event(begin, keys);
   return recovered;
 }
 
 bool LoggedBus::touch(std::string_view input, std::int64_t value) {
   if (!inner().touch(input, value)) return false;
-  end_part({kWithoutStop});
+  end_part(Ending::kNextStart);
   talk_.log().add_input(now(), "op", input, value);
   return true;
 }
 
-void LoggedBus::end_part(const Keys& keys) {
-  if (part_) note(*std::exchange(part_, std::nullopt), keys);
+void LoggedBus::end_part(Ending ending, std::optional<ErrorCode> error) {
+  if (part_) note(*std::exchange(part_, std::nullopt), ending, error);
 }
 
-void LoggedBus::note(const Part& part, const Keys& more) {
-  const bool is_read = part.access == Access::kRead;
-  TraceEvent event;
-  event.dir = is_read ? "read" : "write";
-  event.bytes = part.bytes;
-  event.id = part.address.value;
-  event.text = part.acks;
-  Keys keys{{"op", event.dir},
-            {"addr", std::int64_t{event.id}},
-            {"hex", to_hex(part.bytes)},
-            {"ack", part.acks}};
-  keys.insert(keys.end(), more.begin(), more.end());
-  talk_.add(part.begin, keys, is_read ? Direction::kFromDevice : Direction::kToDevice,
-            bus_message_of(event));
+void LoggedBus::note(const Part& part, Ending ending, std::optional<ErrorCode> error,
+                     const Keys& more) {
+  talk_.add({.begin = part.begin,
+             .end = now(),
+             .address = part.address.value,
+             .is_read = part.access == Access::kRead,
+             .bytes = part.bytes,
+             .acks = part.acks,
+             .ending = ending,
+             .error = error},
+            more);
 }
 
 }  // namespace armjig

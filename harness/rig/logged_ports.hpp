@@ -11,10 +11,10 @@
 #include "harness/link/port_around.hpp"
 #include "harness/rig/wire_log.hpp"
 
-/// A wire log around each kind of port.
+/// A recording around each kind of port.
 namespace armjig {
 
-/// A line for each piece as it was written or read.
+/// A record for each piece as it was written or read.
 class LoggedStream final : public StreamAround {
  public:
   LoggedStream(std::unique_ptr<StreamPort> port, std::shared_ptr<WireLog> log);
@@ -51,11 +51,11 @@ class LoggedSession final : public SessionAround {
   std::shared_ptr<WireLog> log_;
   Duration offset_;
   std::optional<WireLog::Talk> talk_;  ///< of the connection
-  int connection_ = 0;
+  std::uint32_t connection_ = 0;
   bool is_open_ = false;
 };
 
-/// A line `write` or `read` for each part of a transaction, as the recordings of captures/morap
+/// A record `write` or `read` for each part of a transaction, as the recordings of captures/morap
 /// have them, with the time at which it began. What an adapter does not tell is not in it: which
 /// byte was refused (`ack` ends after the address), and in which part of several (`ack` is empty);
 /// `refused` says that something was, `error` that the bus failed.
@@ -82,8 +82,9 @@ class LoggedBus final : public BusAround {
     std::string acks{};  ///< `A` or `N` for each byte that was answered
   };
 
-  void note(const Part& part, const WireLog::Keys& more);
-  void end_part(const WireLog::Keys& keys);
+  void note(const Part& part, BusPart::Ending ending, std::optional<ErrorCode> error,
+            const WireLog::Keys& more = {});
+  void end_part(BusPart::Ending ending, std::optional<ErrorCode> error = {});
 
   WireLog::Talk talk_;
   std::optional<Part> part_;

@@ -124,8 +124,13 @@ Outcome<Rig<Port>> Rig<Port>::open(const Wiring<Port>& wiring, const RigOptions&
   auto port = open_port(wiring, options);
   if (!port) return tl::unexpected{port.error()};
   Rig rig{*std::move(port)};
-  if (options.wire_log != nullptr) {
-    auto log = WireLog::create(options.wire_log, wiring.device, wiring.make_dissector);
+  if (options.capture.file != nullptr) {
+    auto log = WireLog::create(
+        options.capture,
+        {.device = wiring.device,
+         .make_dissector = wiring.make_dissector,
+         .target = options.target.text,
+         .epoch_ns = options.target.is_emulated() ? 0 : epoch_of(rig.port_->now())});
     if (!log) return tl::unexpected{log.error()};
     using Logged = typename Layers<Port>::Logged;
     rig.port_ = std::make_unique<Logged>(std::move(rig.port_), *std::move(log));

@@ -17,6 +17,7 @@
 #include "harness/rig/guarded_ports.hpp"
 #include "harness/rig/stoppable_ports.hpp"
 #include "harness/rig/target.hpp"
+#include "harness/rig/wire_log.hpp"
 #include "harness/rig/wiring.hpp"
 
 namespace armjig {
@@ -32,23 +33,23 @@ struct RigOptions {
   Target target;
   Permissions permissions;               ///< what may be sent to it, if it is not emulated
   std::optional<Impairment> impairment;  ///< a bad link on purpose
-  std::shared_ptr<OutputFile> wire_log;  ///< of the growing kind, for every byte; none: no log
+  CaptureFile capture;                   ///< for every byte that passes
   WhenGone when_gone{};
   WhenLeft when_left{};  ///< of a server
   MustStop must_stop;    ///< ends waiting for a device that is not emulated; empty: nothing does
 };
 
-/// A device on the jig, for `Port` as in `Wiring`. From the device outwards: its port, the wire
-/// log, the guard unless it is emulated, the impairments, and what lets it be stopped. So the log
-/// has what the device really got, the guard's own stops among it, and a flipped bit does not slip
-/// past the guard. This is the one way by which programs get at a target.
+/// A device on the jig, for `Port` as in `Wiring`. From the device outwards: its port, the
+/// recording, the guard unless it is emulated, the impairments, and what lets it be stopped. So the
+/// recording has what the device really got, the guard's own stops among it, and a flipped bit does
+/// not slip past the guard. This is the one way by which programs get at a target.
 template <class Port>
 class Rig {
  public:
   /// With permission to move, call it, and connect to a server, while the program has one thread
   /// (see `Supervisor::start`). A target that moves may not be reopened: when it has gone, a person
   /// has to look at it (`kBadValue`). Problems: those of `open_target`; `kUnsupported` for an
-  /// impairment that a bus cannot have; that of the wire log.
+  /// impairment that a bus cannot have; that of the recording.
   [[nodiscard]] static Outcome<Rig> open(const Wiring<Port>& wiring, const RigOptions& options);
 
   /// A rig of nothing but a port, without a guard: for devices in memory.

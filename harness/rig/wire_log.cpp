@@ -1,65 +1,209 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/rig/wire_log.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "harness/capture/message_json.hpp"
-#include "harness/core/hex.hpp"
+#include "harness/core/version.hpp"
 
 namespace armjig {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Keys = WireLog::Keys;
 
-std::string line_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+/// What reads such a file (`CaptureRecord::details`).
+std::string details_of(const Keys& keys) {
+  Json json = Json::object();
+  for (const auto& [name, value] : keys) {
+    std::visit([&, key = std::string{name}](const auto& one) { json[key] = one; }, value);
+  }
+  const auto text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.substr(1, text.size() - 2);
+}
+
+CaptureHeader header_of(const CaptureSubject& subject, bool is_redacted) {
+  Json json{{"format", "golden-trace/1"},
+            {"device", subject.device},
+            {"title", "capture"},
+            {"source", fmt::format("armjig {}", kVersion)}};
+  if (!subject.target.empty()) json["target"] = subject.target;
+  if (subject.epoch_ns > 0) json["epoch_ns"] = subject.epoch_ns;
+  const CaptureHeader header{json.dump(-1, ' ', false, Json::error_handler_t::replace),
+                             std::string{subject.device}, subject.epoch_ns};
+  return is_redacted ? header.redacted() : header;
+}
+
+constexpr std::string_view kind_key(LinkKind kind) noexcept {
+  return kind == LinkKind::kBus ? "op" : "dir";
 }
 
 }  // namespace
 
-Outcome<std::shared_ptr<WireLog>> WireLog::create(std::shared_ptr<OutputFile> file,
-                                                  std::string_view device,
-                                                  MakeDissector make_dissector) {
-  const auto begun =
-      file->put(line_of({{"format", "golden-trace/1"}, {"device", device}, {"title", "wire log"}}));
-  if (!begun) return tl::unexpected{begun.error()};
-  return std::shared_ptr<WireLog>{new WireLog{std::move(file), make_dissector}};
+std::int64_t epoch_of(Instant since_start) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return (std::chrono::duration_cast<Duration>(now) - since_start.time_since_epoch()).count();
 }
 
-WireLog::WireLog(std::shared_ptr<OutputFile> file, MakeDissector make_dissector)
-    : file_{std::move(file)}, make_dissector_{make_dissector} {}
+Outcome<std::shared_ptr<WireLog>> WireLog::create(const CaptureFile& file,
+                                                  const CaptureSubject& subject) {
+  std::shared_ptr<WireLog> log{new WireLog{file, subject}};
+  auto begun = log->writer_->begin(log->header_, log->text_);
+  if (begun) begun = log->file_.file->put(log->text_);
+  if (!begun) return tl::unexpected{std::move(begun.error())};
+  log->size_ = log->least_size_ = log->text_.size();
+  return log;
+}
 
-void WireLog::add(Instant time, const Keys& keys, std::span<const Message> messages) {
-  last_ = std::max(last_, time);
-  Json line{{"t_us", microseconds(last_)}};
-  for (const auto& [name, value] : keys) {
-    std::visit([&, key = std::string{name}](const auto& one) { line[key] = one; }, value);
+WireLog::WireLog(const CaptureFile& file, const CaptureSubject& subject)
+    : file_{file},
+      header_{header_of(subject, file.is_redacted)},
+      make_dissector_{subject.make_dissector},
+      writer_{make_capture_writer(file.format)} {
+  for (const auto kind :
+       {LinkKind::kStream, LinkKind::kSession, LinkKind::kBus, LinkKind::kCan, LinkKind::kEvents}) {
+    links_.push_back({header_.device, header_.device, kind});
   }
-  for (const auto& message : messages) line["messages"].push_back(message_object<Json>(message));
-  (void)file_->put(line_of(line));  // whoever opened it asks for its failure
+}
+
+const CaptureLink* WireLog::link_of(LinkKind kind) const noexcept {
+  return &links_[static_cast<std::size_t>(kind)];
+}
+
+bool WireLog::is_full() const noexcept {
+  return file_.rotation && size_ > least_size_ && size_ + text_.size() > file_.rotation->bytes;
+}
+
+void WireLog::add(CaptureRecord record, std::span<const Message> messages) {
+  last_ = std::max(last_, record.time);
+  record.time = last_;
+  text_.clear();
+  // No port hands over what a format could not hold.
+  if (!writer_->add(record, messages, text_)) return;
+  if (is_full()) {
+    if (!file_.file->rotate(file_.rotation->files)) return;
+    text_.clear();
+    (void)writer_->begin(header_, text_);
+    (void)writer_->add(record, messages, text_);
+    size_ = 0;
+  }
+  (void)file_.file->put(text_);  // whoever opened it asks for its failure
+  size_ += text_.size();
+}
+
+void WireLog::add_event(Instant time, const Keys& keys) {
+  const auto details = details_of(keys);
+  add({.time = time,
+       .link = link_of(LinkKind::kEvents),
+       .direction = {},
+       .id = 0,
+       .bytes = {},
+       .details = details},
+      {});
 }
 
 void WireLog::add_input(Instant time, std::string_view kind, std::string_view name,
                         std::int64_t value) {
-  add(time, {{kind, "input"}, {"name", std::string{name}}, {"value", value}});
+  add_event(time, {{kind, "input"}, {"name", std::string{name}}, {"value", value}});
 }
 
-WireLog::Talk::Talk(std::shared_ptr<WireLog> log)
-    : log_{std::move(log)}, dissector_{log_->make_dissector_()} {}
-
-void WireLog::Talk::add(Instant time, const Keys& keys, Direction direction, Bytes bytes) {
-  std::vector<Message> messages;
-  if (!bytes.empty()) dissector_->feed(direction, time, bytes, messages);
-  log_->add(time, keys, messages);
+void WireLog::add_border(Instant time, std::uint32_t connection, std::string_view direction,
+                         std::string_view how) {
+  add_event(time, {{"dir", std::string{direction}},
+                   {"conn", std::int64_t{connection}},
+                   {"text", std::string{how}}});
 }
 
-void WireLog::Talk::add_bytes(Instant time, const Keys& keys, Direction direction, Bytes bytes) {
-  Keys all{{"dir", std::string{to_string(direction)}}};
-  all.insert(all.end(), keys.begin(), keys.end());
-  all.push_back({"hex", to_hex(bytes)});
-  add(time, all, direction, bytes);
+WireLog::Talk::Talk(std::shared_ptr<WireLog> log, LinkKind kind, std::uint32_t id)
+    : log_{std::move(log)}, link_{log_->link_of(kind)}, id_{id} {
+  // Only a text says what was meant.
+  if (log_->file_.format == CaptureFormat::kLines) dissector_ = log_->make_dissector_();
+}
+
+void WireLog::Talk::add(CaptureRecord record, Bytes dissected) {
+  record.link = link_;
+  messages_.clear();
+  if (dissector_ && !dissected.empty()) {
+    dissector_->feed(record.direction, record.time, dissected, messages_);
+  }
+  log_->add(record, messages_);
+}
+
+void WireLog::Talk::add(Instant time, Direction direction, Bytes bytes) {
+  add({.time = time,
+       .link = nullptr,
+       .direction = direction,
+       .id = id_,
+       .bytes = bytes,
+       .details = {}},
+      bytes);
+}
+
+void WireLog::Talk::add(const BusPart& part, const Keys& more) {
+  Keys keys{{"ack", std::string{part.acks}}};
+  keys.insert(keys.end(), more.begin(), more.end());
+  if (part.error) keys.push_back({"error", std::string{describe(*part.error)}});
+  if (part.ending == BusPart::Ending::kNextStart) keys.push_back({"stop", false});
+  const auto details = details_of(keys);
+  add({.time = part.begin,
+       .link = nullptr,
+       .direction = part.is_read ? Direction::kFromDevice : Direction::kToDevice,
+       .id = part.address,
+       .bytes = part.bytes,
+       .details = details},
+      acknowledged(part));
+}
+
+LogOfOverheard::LogOfOverheard(std::shared_ptr<WireLog> log, LinkKind kind)
+    : log_{log}, kind_{kind}, talk_{std::move(log), kind} {}
+
+void LogOfOverheard::to_device(Instant time, Bytes bytes) {
+  talk_.add(time, Direction::kToDevice, bytes);
+}
+
+void LogOfOverheard::from_device(Instant time, Bytes bytes) {
+  talk_.add(time, Direction::kFromDevice, bytes);
+}
+
+void LogOfOverheard::on_connection(const ConnectionEvent& event) {
+  const auto id = event.connection;
+  const auto end = [&](std::string_view how) {
+    log_->add_border(event.time, id, "disconnect", how);
+    connections_.erase(id);
+  };
+  const auto talk = connections_.try_emplace(id, log_, LinkKind::kSession, id).first;
+  switch (event.kind) {
+    case ConnectionEvent::Kind::kBegun:
+      return log_->add_border(event.time, id, "connect", "ok");
+    case ConnectionEvent::Kind::kToServer:
+      return talk->second.add(event.time, Direction::kToDevice, event.bytes);
+    case ConnectionEvent::Kind::kFromServer:
+      return talk->second.add(event.time, Direction::kFromDevice, event.bytes);
+    case ConnectionEvent::Kind::kHalfClosed:
+      return log_->add_border(event.time, id, "disconnect", "client-half-close");
+    case ConnectionEvent::Kind::kClosed:
+      return end("client-close");
+    case ConnectionEvent::Kind::kReset:
+      return end("client-reset");
+    case ConnectionEvent::Kind::kDropped:
+      return end("device-eof");
+  }
+}
+
+void LogOfOverheard::on_bus(const BusPart& part) { talk_.add(part); }
+
+void LogOfOverheard::on_input(Instant time, std::string_view name, std::int64_t value) {
+  log_->add_input(time, kind_key(kind_), name, value);
+}
+
+void LogOfOverheard::overlook(Instant from, Instant to) {
+  log_->add_event(to, {{kind_key(kind_), "overlooked"},
+                       {"since_us", microseconds(from)},
+                       {"text", "armjig was late itself"}});
 }
 
 }  // namespace armjig

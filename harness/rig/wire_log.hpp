@@ -2,29 +2,57 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include "harness/capture/capture.hpp"
 #include "harness/core/error.hpp"
+#include "harness/core/overhearer.hpp"
 #include "harness/core/time.hpp"
 #include "harness/report/output_file.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig {
 
-/// A `golden-trace/1` file that grows line by line with what passes, and what it means: a key
-/// `messages` has those that ended in the line. `armjig decode` reads it back. Lines are in the
-/// file as they are made, so that nothing is missing after a crash. A file that cannot be written
-/// any more ends with its last whole line, and tells why (`OutputFile::failure`). Not in it: what a
-/// write that failed may have sent in part, and the stops of the supervisor, which come when we are
-/// gone.
+/// Where a recording goes, and how.
+struct CaptureFile {
+  /// A file that is full is kept, and another one begun.
+  struct Rotation {
+    std::uint64_t bytes{};  ///< of a file, unless one record is longer
+    int files{};            ///< that are kept, the newest among them
+  };
+
+  std::shared_ptr<OutputFile> file{};  ///< of the growing kind; none: nothing is recorded
+  CaptureFormat format{};
+  std::optional<Rotation> rotation{};
+  bool is_redacted = false;  ///< leaves out of the header who recorded it and where
+};
+
+/// What a recording says of itself.
+struct CaptureSubject {
+  std::string_view device;
+  MakeDissector make_dissector{};
+  std::string target{};     ///< as it was written, or would be
+  std::int64_t epoch_ns{};  ///< its start, since 1970; 0: virtual time
+};
+
+/// The moment, for a recording whose time is `since_start` now.
+[[nodiscard]] std::int64_t epoch_of(Instant since_start);
+
+/// A recording that grows record by record with what passes. In a text it also says what that
+/// means: a key `messages` has those that ended in the line. Records are in the file as they are
+/// made, so that nothing is missing after a crash. A file that cannot be written any more ends with
+/// its last whole record, and tells why (`OutputFile::failure`). Not in it: what a write that
+/// failed may have sent in part, and the stops of the supervisor, which come when we are gone.
 class WireLog {
  public:
-  using MakeDissector = std::unique_ptr<Dissector> (*)();
-
-  /// A key of a line and its value.
+  /// Something more that is known of a record.
   struct Key {
     std::string_view name;
     std::variant<bool, std::int64_t, std::string> value;
@@ -34,40 +62,76 @@ class WireLog {
   /// What was said on one byte stream, connection or bus.
   class Talk {
    public:
-    explicit Talk(std::shared_ptr<WireLog> log);
-    /// A line with `keys` after the time. `bytes` are what they tell.
-    void add(Instant time, const Keys& keys, Direction direction, Bytes bytes);
-    /// A line `to_device` or `from_device`, with `keys` between direction and bytes.
-    void add_bytes(Instant time, const Keys& keys, Direction direction, Bytes bytes);
+    /// `id` is the number of a connection.
+    Talk(std::shared_ptr<WireLog> log, LinkKind kind, std::uint32_t id = 0);
+    void add(Instant time, Direction direction, Bytes bytes);
+    void add(const BusPart& part, const Keys& more = {});
     [[nodiscard]] WireLog& log() noexcept { return *log_; }
 
    private:
+    void add(CaptureRecord record, Bytes dissected);
+
     std::shared_ptr<WireLog> log_;
+    const CaptureLink* link_;
+    std::uint32_t id_;
     std::unique_ptr<Dissector> dissector_;
+    std::vector<Message> messages_;
   };
 
-  /// Begins `file`, of the growing kind. Problems: it cannot be written.
-  [[nodiscard]] static Outcome<std::shared_ptr<WireLog>> create(std::shared_ptr<OutputFile> file,
-                                                                std::string_view device,
-                                                                MakeDissector make_dissector);
+  /// Begins the file. Problems: it cannot be written.
+  [[nodiscard]] static Outcome<std::shared_ptr<WireLog>> create(const CaptureFile& file,
+                                                                const CaptureSubject& subject);
 
-  /// A line with `keys` after the time. A time before the last one, as clocks that were read one
-  /// after the other may have it, is taken for that.
-  void add(Instant time, const Keys& keys, std::span<const Message> messages = {});
+  /// An event with `keys` after the time, the first of them `dir` or `op`. A time before the last
+  /// one, as clocks that were read one after the other may have it, is taken for that.
+  void add_event(Instant time, const Keys& keys);
 
   /// What somebody did at the device; `kind` is `dir` or `op`.
   void add_input(Instant time, std::string_view kind, std::string_view name, std::int64_t value);
 
+  /// How a connection began (`connect`) or ended (`disconnect`).
+  void add_border(Instant time, std::uint32_t connection, std::string_view direction,
+                  std::string_view how);
+
   /// Numbers connections in the order of their beginnings.
-  [[nodiscard]] int next_connection() noexcept { return connections_++; }
+  [[nodiscard]] std::uint32_t next_connection() noexcept { return connections_++; }
 
  private:
-  WireLog(std::shared_ptr<OutputFile> file, MakeDissector make_dissector);
+  WireLog(const CaptureFile& file, const CaptureSubject& subject);
 
-  std::shared_ptr<OutputFile> file_;
+  void add(CaptureRecord record, std::span<const Message> messages);
+  [[nodiscard]] bool is_full() const noexcept;
+  [[nodiscard]] const CaptureLink* link_of(LinkKind kind) const noexcept;
+
+  CaptureFile file_;
+  CaptureHeader header_;
   MakeDissector make_dissector_;
+  std::unique_ptr<CaptureWriter> writer_;
+  std::vector<CaptureLink> links_;  ///< by kind
+  std::string text_;
+  std::uint64_t size_ = 0;        ///< of the file
+  std::uint64_t least_size_ = 0;  ///< of one with nothing but the header
   Instant last_{};
-  int connections_ = 0;
+  std::uint32_t connections_ = 0;
+};
+
+/// Writes down what it overhears.
+class LogOfOverheard final : public Overhearer {
+ public:
+  LogOfOverheard(std::shared_ptr<WireLog> log, LinkKind kind);
+
+  void to_device(Instant time, Bytes bytes) override;
+  void from_device(Instant time, Bytes bytes) override;
+  void on_connection(const ConnectionEvent& event) override;
+  void on_bus(const BusPart& part) override;
+  void on_input(Instant time, std::string_view name, std::int64_t value) override;
+  void overlook(Instant from, Instant to) override;
+
+ private:
+  std::shared_ptr<WireLog> log_;
+  LinkKind kind_;
+  WireLog::Talk talk_;  ///< unless it is a server
+  std::map<std::uint32_t, WireLog::Talk> connections_;
 };
 
 }  // namespace armjig

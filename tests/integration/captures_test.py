@@ -7,11 +7,17 @@ it, armjig reads. Ends with 77, which CTest takes for skipped, where Wireshark's
 """
 
 import json
+import os
 import pathlib
+import re
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import time
+import tty
 import unittest
 
 ARMJIG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
@@ -22,6 +28,9 @@ RECORDINGS = ("demo/start-and-halt", "parol6/gripper_can_burst_a", "parol6/estop
               "kinovazed/framing-long-junk-5000")
 # Said to root, whatever the file.
 AS_ROOT = "Running as user"
+PATIENCE = 60
+IDLE = b"\xff\xff\xff\x34" + bytes(36) + b"\xff" + bytes(12) + b"\xe4\x01\x02"
+ANSWER_SIZE = 58
 
 
 def run(*words):
@@ -126,6 +135,141 @@ class Captures(unittest.TestCase):
         self.ok(ARMJIG, "trace", "cut", text, out, "--to", "2", "--redact")
         self.assertEqual(self.back(out), [{"format": "golden-trace/1", "device": "demo"},
                                           {"t_us": 1000000, "dir": "to_device", "hex": "a5718e"}])
+
+    # Of sessions
+
+    def start(self, *words, **how):
+        """A program that says where it listens; the process, and where."""
+        process = subprocess.Popen([ARMJIG, *map(str, words)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True, **how)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process, process.stdout.readline().split()[1]
+
+    @staticmethod
+    def ask(place, count):
+        """Idles to a board on a pseudo-terminal, each answered. What it answered."""
+        port = os.open(place.removeprefix("pty:"), os.O_RDWR | os.O_NOCTTY)
+        tty.setraw(port)
+        answers = b""
+        for number in range(count):
+            os.write(port, IDLE)
+            while len(answers) < (number + 1) * ANSWER_SIZE:
+                answers += os.read(port, 4096)
+        os.close(port)
+        return answers
+
+    @staticmethod
+    def bytes_of(lines, direction):
+        return b"".join(bytes.fromhex(line["hex"]) for line in lines
+                        if line.get("dir") == direction)
+
+    def test_every_command_with_a_wire_records_in_both_formats(self):
+        script = f"{SOURCE}/harness/script/examples/joint6.rbt"
+        nodes = self.folder / "nodes.toml"
+        nodes.write_text("[[node]]\nid = 2\n")
+        for words in ("watch parol6 --target emulated: --count 5",
+                      "conformance demo --target emulated: --filter query",
+                      "conformance kinovazed --target emulated: --filter connection",
+                      "latency demo --target emulated: --count 10",
+                      f"run {script} --target emulated: --home", f"plan {script}",
+                      f"lab exec --i2c {nodes} -- i2ctransfer -y 1 r1@0x12",
+                      "morap read-params --target emulated:",
+                      "i2c scan --target emulated:"):
+            with self.subTest(words):
+                packets, text = self.folder / "x.pcapng", self.folder / "x.jsonl"
+                for path in (packets, text):
+                    command, dashes, program = words.partition(" -- ")
+                    run(ARMJIG, *command.split(), "--capture", str(path),
+                        *(dashes + program).split())
+                self.ok("capinfos", packets)
+                counts = [[re.sub(r"^.*?: ", "", line)
+                           for line in self.ok(ARMJIG, "trace", "info", path).splitlines()
+                           if line.startswith("link ")] for path in (packets, text)]
+                self.assertEqual(counts[0], counts[1])
+                self.assertTrue(counts[0])
+                self.ok(ARMJIG, "trace", "convert", packets, self.folder / "y.jsonl")
+
+    def test_a_killed_emulator_leaves_all_that_passed(self):
+        for name in ("x.pcapng", "x.jsonl"):
+            with self.subTest(name):
+                path = self.folder / name
+                process, place = self.start("emulate", "parol6", "--capture", path)
+                answers = self.ask(place, 20)
+                process.send_signal(signal.SIGKILL)
+                process.wait(PATIENCE)
+                self.ok(ARMJIG, "trace", "info", path)
+                lines = lines_of(path) if name.endswith("jsonl") else self.back(path)
+                self.assertEqual(self.bytes_of(lines, "to_device"), 20 * IDLE)
+                self.assertEqual(self.bytes_of(lines, "from_device"), answers)
+                age = time.time() - lines[0]["epoch_ns"] / 1e9
+                self.assertTrue(0 <= age < 600, age)
+
+    def test_a_file_is_readable_wherever_a_program_died(self):
+        path = self.folder / "x.pcapng"
+        process, place = self.start("emulate", "parol6", "--capture", path)
+        self.ask(place, 3)
+        process.send_signal(signal.SIGTERM)
+        process.wait(PATIENCE)
+        whole, cut = path.read_bytes(), self.folder / "cut.pcapng"
+        records = []
+        for size in range(200, len(whole) + 1, 7):
+            cut.write_bytes(whole[:size])
+            code, output, _ = run(ARMJIG, "trace", "info", str(cut))
+            if code != 0:  # within the header
+                self.assertEqual(records, [])
+                continue
+            found = re.search(r"(\d+) records", output)
+            records.append(int(found.group(1)) if found else 0)
+        self.assertEqual(records, sorted(records))
+        self.assertGreaterEqual(records[-1], 5)
+
+    def test_connections_of_an_emulated_server(self):
+        path = self.folder / "x.pcapng"
+        process, place = self.start("emulate", "kinovazed", "--tcp", "0", "--set", "profile=firmware",
+                                    "--capture", path)
+        host, port = place.removeprefix("tcp:").rsplit(":", 1)
+        with socket.create_connection((host, int(port)), timeout=PATIENCE) as client:
+            client.sendall(b"QuitEStop\r\n")
+            self.assertTrue(client.recv(4096))
+        process.send_signal(signal.SIGTERM)
+        process.wait(PATIENCE)
+        lines = self.back(path)
+        self.assertEqual(lines[0]["target"], "emulated:?profile=firmware")
+        self.assertEqual(lines[1]["dir"], "connect")
+        self.assertEqual(self.bytes_of(lines, "to_device"), b"QuitEStop\r\n")
+        self.assertIn("1 conversations", self.ok(ARMJIG, "trace", "show", path))
+        self.ok("tshark", "-r", path)
+
+    def test_files_rotate(self):
+        path = self.folder / "x.pcapng"
+        self.ok(ARMJIG, "watch", "parol6", "--target", "emulated:", "--count", "500", "--capture",
+                path, "--rotate", "20kB,3")
+        files = sorted(file.name for file in self.folder.iterdir())
+        self.assertEqual(files, ["x.1.pcapng", "x.2.pcapng", "x.pcapng"])
+        last = 0.0
+        for name in reversed(files[:2]):
+            self.assertLessEqual((self.folder / name).stat().st_size, 20_000)
+        for name in ("x.2.pcapng", "x.1.pcapng", "x.pcapng"):
+            lines = self.back(self.folder / name)
+            self.assertGreater(lines[1]["t_us"], last)
+            last = lines[-1]["t_us"]
+        for words in ("--capture - --rotate 20kB,3", "--rotate 20kB,3", "--redact",
+                      f"--capture {path} --rotate 20kB", f"--capture {path} --rotate 1B,3",
+                      f"--capture {path} --rotate 20kB,0", f"--capture {path}.pcap"):
+            with self.subTest(words):
+                code, _, errors = run(ARMJIG, "watch", "demo", "--target", "emulated:", "--count",
+                                      "1", *words.split())
+                self.assertEqual((code, len(errors)), (2, 1), errors)
+
+    def test_nothing_is_said_of_a_target_that_is_redacted(self):
+        path = self.folder / "x.pcapng"
+        self.ok(ARMJIG, "watch", "parol6", "--target", "emulated:?pass-us=20", "--count", "2",
+                "--capture", path, "--redact")
+        self.assertNotIn(b"pass-us=20", path.read_bytes())
+        self.assertEqual(set(self.back(path)[0]), {"format", "device", "title", "source"})
+
+    # Of files
 
     def test_a_cut_file_is_read_with_a_warning_and_a_damaged_one_with_a_problem(self):
         path = self.packets_of("demo/start-and-halt")

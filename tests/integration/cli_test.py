@@ -137,16 +137,16 @@ def rows(folder):
         ("i2c read 0x12 1 --select 83 --target emulated:", "", 0, ["needs_calibration"]),
         ("i2c scan --target emulated: --impair loss=100%", "", 4, ["!nobody answers"]),
         ("i2c scan --target emulated: --impair reorder=1%", "", 2, ["!'reorder=1%'", "!an I2C bus can"]),
-        (f"i2c read 0x12 1 --select 83 --target emulated: --wire-log {logged}", "", 0, []),
+        (f"i2c read 0x12 1 --select 83 --target emulated: --capture {logged}", "", 0, []),
         (f"decode morap --file {logged}", "", 0, ["needs_calibration"]),
-        (f"morap read-params --target emulated: --wire-log {folder}/no/log", "", 3, ["!/no/log"]),
+        (f"morap read-params --target emulated: --capture {folder}/no/log", "", 3, ["!/no/log"]),
         ("decode morap 24 80", "", 0, ["128 (read_angle)"]),
         (f"decode morap --file {SOURCE}/captures/morap/bus-scan.jsonl", "", 1,
          ["poke", "cut short", "!transactions without an answer"]),
         (f"decode morap --file {SOURCE}/captures/morap/loop-voltage.jsonl --json", "", 0,
          ["read_current"]),
         (f"decode kinovazed --file {two}", "", 0, ["Freeze", "EStop"]),
-        (f"conformance kinovazed --target emulated: --filter connection --wire-log {served}", "", 0,
+        (f"conformance kinovazed --target emulated: --filter connection --capture {served}", "", 0,
          [" passed, 0 failed"]),
         (f"decode kinovazed --file {served} --json", "", 1,  # an empty line is one of the cases
          ['"t_us"', "Heartbeat"]),
@@ -252,7 +252,7 @@ def rows(folder):
         (f"plan {examples}/joint6.rbt", "", 0, ["t=2, trap)", "j6", "!takes 12"]),
         (f"plan {examples}/joint6.rbt --csv -", "", 0, ["frame,time_s,line,command,j1_pos"]),
         (f"plan {examples}/joint6.rbt --json -", "", 0, ['"schema":"armjig.plan/1"']),
-        (f"plan {examples}/joint6.rbt --trace -", "", 0, ['"golden-trace/1"', "ffffff34002800"]),
+        (f"plan {examples}/joint6.rbt --capture -", "", 0, ['"golden-trace/1"', "ffffff34002800"]),
         (f"plan {examples}/joint6.rbt --html -", "", 0, ["<!doctype html>", "data-scene"]),
         ("plan - --from power-up", "Begin()\nMoveJoint(10, 10, 10, 10, 10, 10, t=4)\nEnd()", 0,
          ["10.00 deg"]),
@@ -293,7 +293,7 @@ def rows(folder):
         (f"run {examples}/joint6.rbt", "", 2, ["!--target is missing"]),
         (f"run {examples}/pick_and_place.rbt --target pty:/nonexistent --allow state", "", 3,
          ["!needs --allow grip,move"]),
-        (f"run {binary} --target emulated: --wire-log {silent}", "", 2, ["!this is no text"]),
+        (f"run {binary} --target emulated: --capture {silent}", "", 2, ["!this is no text"]),
     ] + [(command, "", 2, ["!'toaster': no such device", "!there are: parol6, kinovazed, morap, demo"])
          for command in ("conformance toaster --target emulated:", "conformance mutants toaster",
                          "console toaster --target emulated:", "watch toaster --target emulated:",
@@ -301,7 +301,7 @@ def rows(folder):
     ] + [(f"{command} {path} {more}", "", 2, [f"!{name}.rbt:2:"])
          for name, path in wrong.items()
          for command, more in (("plan", ""),
-                               ("run", f"--target emulated: --home --wire-log {silent}"))]
+                               ("run", f"--target emulated: --home --capture {silent}"))]
 
 
 def check(arguments, typed, exit_code, words):

@@ -160,10 +160,10 @@ class Outputs(unittest.TestCase):
                [f"conformance mutants demo {file}" for file in reports] + \
                [f"emulate parol6 --check {file}" for file in reports[1:]] + \
                [f"lab exec --i2c {nodes} --check {file} -- echo it ran" for file in reports] + \
-               [f"plan {script} --{form} {path}" for form in ("csv", "json", "html", "trace")] + \
+               [f"plan {script} --{form} {path}" for form in ("csv", "json", "html", "capture")] + \
                [f"morap simulate --type pd --pole -9 --inertia 0.2 --{form} {path}"
                 for form in ("csv", "svg", "html")] + \
-               [f"{command} --wire-log {path}"
+               [f"{command} --capture {path}"
                 for command in ("conformance demo --target emulated:",
                                 f"run {script} --target emulated: --home",
                                 "console demo --target emulated:", "i2c scan --target emulated:",
@@ -183,7 +183,8 @@ class Outputs(unittest.TestCase):
     def test_a_full_disk(self):
         old = self.folder / "old"
         for command in self.commands_with_files(old):
-            if command.startswith("emulate") or "--wire-log" in command:
+            is_growing = "--capture" in command and not command.startswith("plan")
+            if command.startswith("emulate") or is_growing:
                 continue
             with self.subTest(command):
                 old.write_text("a good old report")
@@ -194,13 +195,13 @@ class Outputs(unittest.TestCase):
                     self.assertEqual(old.read_text(), "a good old report")
                 self.assertEqual({one.name for one in self.folder.iterdir()}, {"old", "nodes.toml"})
 
-    def test_a_full_disk_cuts_a_wire_log_at_a_line(self):
+    def test_a_full_disk_cuts_a_recording_at_a_line(self):
         log = self.folder / "log"
         for command in self.commands_with_files(log):
-            if "--wire-log" not in command or command.startswith(("console", "i2c", "morap")):
+            if "--capture" not in command or command.startswith(("console", "i2c", "morap", "plan")):
                 continue
             with self.subTest(command):
-                self.assert_said_once(run(command, preexec_fn=limited), f"--wire-log {log}")
+                self.assert_said_once(run(command, preexec_fn=limited), f"--capture {log}")
                 lines = log.read_text().splitlines()
                 self.assertGreater(len(lines), 1)
                 for line in lines:
@@ -227,7 +228,7 @@ class Outputs(unittest.TestCase):
                 self.assert_refused(f"conformance demo --target emulated: --json {paths[0]} "
                                     f"--html {paths[1]}", 2, "--html", "goes there already")
                 self.assert_refused(f"conformance demo --target emulated: --json {paths[0]} "
-                                    f"--wire-log {paths[1]}", 2, "goes there already")
+                                    f"--capture {paths[1]}", 2, "goes there already")
         self.assertEqual(run([*DEMO, "--json", "/dev/null", "--html", "/dev/null"]).returncode, 0)
 
     def test_a_file_that_standard_output_goes_to_is_refused(self):
@@ -236,9 +237,9 @@ class Outputs(unittest.TestCase):
             self.assertEqual(run([*DEMO, "--json", str(path)], stdout=out).returncode, 2)
 
     def test_printed_json_is_not_mixed_with_a_file(self):
-        for command in ("watch parol6 --target emulated: --count 5 --json --wire-log -",
+        for command in ("watch parol6 --target emulated: --count 5 --json --capture -",
                         f"run {SOURCE}/harness/script/examples/joint6.rbt --target emulated: --json "
-                        "--wire-log -", "emulate parol6 --check --json --html -"):
+                        "--capture -", "emulate parol6 --check --json --html -"):
             with self.subTest(command):
                 self.assert_refused(command, 2, "goes there already")
 
@@ -253,7 +254,7 @@ class Outputs(unittest.TestCase):
                 self.assertNotEqual(ended.stdout, "")
                 if "--json -" in command:
                     json.loads(ended.stdout)
-                elif "--wire-log" in command or "--trace" in command:
+                elif "--capture" in command:
                     self.assertIn("golden-trace/1", ended.stdout)
                     for line in ended.stdout.splitlines():
                         json.loads(line)
@@ -310,7 +311,7 @@ class Outputs(unittest.TestCase):
     def test_an_interrupted_case_on_a_real_link_ends_at_once(self):
         report = self.folder / "report.json"
         process = self.start("conformance", "parol6", "--target", self.emulator(), "--allow", "all",
-                             "--filter", "home", "--wire-log", "-", "--json", str(report),
+                             "--filter", "home", "--capture", "-", "--json", str(report),
                              stderr=subprocess.DEVNULL)
         for line in process.stdout:
             if "(home)" in line:

@@ -192,5 +192,35 @@ TEST_F(OutputFileTest, KnowsOnePlaceByTwoSpellings) {
   EXPECT_FALSE(open("/dev/null").value()->is_same_place(*open("/dev/null").value()));
 }
 
+TEST_F(OutputFileTest, RotatesAndKeepsAsManyAsAreWanted) {
+  const auto file = open(path("log.txt"), Kind::kGrowing).value();
+  ASSERT_TRUE(file->can_rotate());
+  for (const char* const piece : {"one", "two", "three", "four"}) {
+    ASSERT_TRUE(file->put(piece));
+    ASSERT_TRUE(file->rotate(3));
+  }
+  ASSERT_TRUE(file->put("five"));
+  EXPECT_EQ(content(path("log.txt")), "five");
+  EXPECT_EQ(content(path("log.1.txt")), "four");
+  EXPECT_EQ(content(path("log.2.txt")), "three");
+  EXPECT_EQ(files(), 3);
+}
+
+TEST_F(OutputFileTest, RotatesOnlyFilesThatGrow) {
+  EXPECT_FALSE(open(path("whole"))->get()->can_rotate());
+  EXPECT_FALSE(open("/dev/null", Kind::kGrowing)->get()->can_rotate());
+  EXPECT_FALSE(open("-", Kind::kGrowing)->get()->can_rotate());
+}
+
+TEST_F(OutputFileTest, SaysThatItCannotRotate) {
+  const auto file = open(path("log"), Kind::kGrowing).value();
+  ASSERT_TRUE(file->put("one"));
+  fs::create_directory(path("log.1"));
+  EXPECT_FALSE(file->rotate(2));
+  EXPECT_TRUE(file->failure());
+  EXPECT_FALSE(file->put("two"));
+  EXPECT_EQ(content(path("log")), "one");
+}
+
 }  // namespace
 }  // namespace armjig

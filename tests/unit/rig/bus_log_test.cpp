@@ -32,6 +32,7 @@ constexpr std::array kTwoBytes{std::byte{1}, std::byte{2}};
 std::string line_of(const TraceEvent& event) {
   auto json = nlohmann::ordered_json::parse(event.json);
   json.erase("t_us");
+  json.erase("ns");
   json.erase("messages");
   return json.dump();
 }
@@ -43,8 +44,8 @@ class BusLog : public testing::Test {
   [[nodiscard]] std::unique_ptr<BusPort> logged(std::unique_ptr<BusPort> port) const {
     return std::make_unique<LoggedBus>(
         std::move(port),
-        WireLog::create(OutputFile::open(path_, OutputFile::Kind::kGrowing).value(), "morap",
-                        morap::make_dissector)
+        WireLog::create({.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value()},
+                        {.device = "morap", .make_dissector = morap::make_dissector})
             .value());
   }
   [[nodiscard]] std::unique_ptr<BusPort> logged_node() const {
@@ -150,21 +151,21 @@ TEST_F(BusLog, OfAnAdapterSaysWhatItKnows) {
 TEST_F(BusLog, IsPutIntoARig) {
   RigOptions options;
   options.target = parse_target("emulated:").value();
-  options.wire_log = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
+  options.capture.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
   const auto wiring = test::wiring<cli::OnBus>("morap");
   auto rig = Rig<BusPort>::open(wiring, options);
   ASSERT_TRUE(rig.has_value());
   const auto select = write_to(kNode, kSelectAngle);
   ASSERT_TRUE(rig->port().transfer({&select, 1}));
   EXPECT_EQ(events().size(), 1U);
-  options.wire_log = OutputFile::open("/dev/full", OutputFile::Kind::kGrowing).value();
+  options.capture.file = OutputFile::open("/dev/full", OutputFile::Kind::kGrowing).value();
   EXPECT_EQ(Rig<BusPort>::open(wiring, options).error().code, ErrorCode::kCannotWrite);
 }
 
 TEST_F(BusLog, HasWhatIsLeftOfAnImpairedTransaction) {
   RigOptions options;
   options.target = parse_target("emulated:").value();
-  options.wire_log = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
+  options.capture.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
   options.impairment = parse_impairment("out.disconnect-after=1").value();
   auto rig = cli::open_rig<cli::OnBus>(test::device("morap"), options);
   ASSERT_TRUE(rig.has_value());

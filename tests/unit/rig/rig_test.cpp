@@ -124,7 +124,7 @@ TEST(Rig, TheWireLogHasWhatTheDeviceGotAndNotWhatWasRefused) {
   const std::string path =
       fs::temp_directory_path() / ("armjig-rig-log-" + std::to_string(::getpid()));
   RigOptions options;
-  options.wire_log = OutputFile::open(path, OutputFile::Kind::kGrowing).value();
+  options.capture.file = OutputFile::open(path, OutputFile::Kind::kGrowing).value();
   {
     auto rig = open("pty:" + terminal.path(), options);
     ASSERT_TRUE(rig);
@@ -139,7 +139,7 @@ TEST(Rig, TheWireLogHasWhatTheDeviceGotAndNotWhatWasRefused) {
 
 TEST(Rig, AWireLogThatCannotBeWrittenIsAProblem) {
   RigOptions options;
-  options.wire_log = OutputFile::open("/dev/full", OutputFile::Kind::kGrowing).value();
+  options.capture.file = OutputFile::open("/dev/full", OutputFile::Kind::kGrowing).value();
   const auto rig = open("emulated:", options);
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, ErrorCode::kCannotWrite);

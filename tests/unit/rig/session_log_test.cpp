@@ -28,7 +28,7 @@ class SessionLogTest : public testing::Test {
   [[nodiscard]] Rig<SessionSource> logged_server() const {
     RigOptions options;
     options.target = parse_target("emulated:").value();
-    options.wire_log = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
+    options.capture.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
     return *cli::open_rig<cli::OnServer>(test::device("kinovazed"), options);
   }
   [[nodiscard]] std::vector<TraceEvent> events() const { return read_trace(path_).value().events; }
@@ -101,7 +101,7 @@ TEST_F(SessionLogTest, HasWhatAHandDoes) {
 TEST_F(SessionLogTest, HasWhatPassesOnAConnectionThatIsUsedAsAStream) {
   RigOptions options;
   options.target = parse_target("emulated:").value();
-  options.wire_log = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
+  options.capture.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value();
   options.impairment = parse_impairment("out.delay=1ms").value();
   {
     auto server = cli::open_rig<cli::OnServer>(test::device("kinovazed"), options).value();
@@ -142,9 +142,10 @@ class LatePort final : public SessionPort {
 };
 
 TEST_F(SessionLogTest, WritesTheTimesOfAllPortsByOneClock) {
-  const auto log = WireLog::create(OutputFile::open(path_, OutputFile::Kind::kGrowing).value(),
-                                   "kinovazed", kinovazed::make_dissector)
-                       .value();
+  const auto log =
+      WireLog::create({.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value()},
+                      {.device = "kinovazed", .make_dissector = kinovazed::make_dissector})
+          .value();
   LoggedSession late{std::make_unique<LatePort>(), log, 500ms};
   LoggedSession early{std::make_unique<LatePort>(), log};
   ASSERT_TRUE(late.connect({}));

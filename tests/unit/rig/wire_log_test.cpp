@@ -5,12 +5,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "emulators/parol6/arm.hpp"
 #include "harness/capture/trace.hpp"
+#include "harness/files/user_file.hpp"
 #include "harness/link/memory_stream.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 #include "tests/unit/support/bytes.hpp"
@@ -24,7 +27,8 @@ using test::LimitedFileSize;
 namespace fs = std::filesystem;
 
 Outcome<std::shared_ptr<WireLog>> parol6_log(const std::shared_ptr<OutputFile>& file) {
-  return WireLog::create(file, "parol6", parol6::make_dissector);
+  return WireLog::create({.file = file},
+                         {.device = "parol6", .make_dissector = parol6::make_dissector});
 }
 Outcome<std::shared_ptr<WireLog>> parol6_log(const std::string& path) {
   const auto file = OutputFile::open(path, OutputFile::Kind::kGrowing);
@@ -148,6 +152,158 @@ TEST_F(WireLog, EndsWithAWholeLineWhereTheDiskIsFull) {
   EXPECT_EQ(file->failure()->where, path_);
   EXPECT_LT(trace().events.size(), 20U);
   EXPECT_LT(fs::file_size(path_), 2'000U);
+}
+
+/// A recording of what is overheard in two formats, as one of them.
+class CaptureOfAWire : public WireLog {
+ protected:
+  ~CaptureOfAWire() override { fs::remove(other_); }
+
+  [[nodiscard]] static std::shared_ptr<armjig::WireLog> begin(const std::string& path,
+                                                              CaptureFile how,
+                                                              CaptureSubject subject = {}) {
+    how.file = OutputFile::open(path, OutputFile::Kind::kGrowing).value();
+    if (subject.device.empty()) subject.device = "parol6";
+    subject.make_dissector = parol6::make_dissector;
+    return armjig::WireLog::create(how, subject).value();
+  }
+  [[nodiscard]] static std::vector<std::string> events_of(const std::string& path) {
+    std::vector<std::string> all;
+    const auto trace = read_trace(path).value();
+    for (const auto& event : trace.events) {
+      auto json = nlohmann::ordered_json::parse(event.json);
+      json.erase("messages");
+      all.push_back(json.dump());
+    }
+    return all;
+  }
+  /// What `tell` tells in both formats, which has to be the same.
+  template <class Tell>
+  [[nodiscard]] std::vector<std::string> recorded(LinkKind kind, Tell tell) const {
+    for (const auto& [path, format] :
+         {std::pair{path_, CaptureFormat::kLines}, std::pair{other_, CaptureFormat::kPcapng}}) {
+      LogOfOverheard log{begin(path, {.format = format}), kind};
+      tell(log);
+    }
+    EXPECT_EQ(events_of(path_), events_of(other_));
+    return events_of(other_);
+  }
+
+  std::string other_ = path_ + ".pcapng";
+};
+
+TEST_F(CaptureOfAWire, HasTheSameInBothFormats) {
+  EXPECT_THAT(
+      recorded(LinkKind::kStream,
+               [](LogOfOverheard& log) {
+                 log.to_device(at(1ms), Bytes{kIdle}.first(2));
+                 log.on_input(at(2ms), "estop", 1);
+                 log.from_device(at(2ms), Bytes{kIdle}.first(1));
+                 log.overlook(at(3ms), at(50ms));
+               }),
+      testing::ElementsAre(
+          R"({"t_us":1000,"dir":"to_device","hex":"ffff"})",
+          R"({"t_us":2000,"dir":"input","name":"estop","value":1})",
+          R"({"t_us":2000,"dir":"from_device","hex":"ff"})",
+          R"({"t_us":50000,"dir":"overlooked","since_us":3000,"text":"armjig was late itself"})"));
+}
+
+TEST_F(CaptureOfAWire, HasConnectionsOfAServerAndHowTheyEnded) {
+  using Kind = ConnectionEvent::Kind;
+  const std::array byte{std::byte{65}};
+  EXPECT_THAT(recorded(LinkKind::kSession,
+                       [&](LogOfOverheard& log) {
+                         log.on_connection({at(1ms), 0, Kind::kBegun, {}});
+                         log.on_connection({at(1ms), 1, Kind::kBegun, {}});
+                         log.on_connection({at(2ms), 1, Kind::kToServer, byte});
+                         log.on_connection({at(3ms), 0, Kind::kFromServer, byte});
+                         log.on_connection({at(4ms), 0, Kind::kHalfClosed, {}});
+                         log.on_connection({at(5ms), 0, Kind::kDropped, {}});
+                         log.on_connection({at(6ms), 1, Kind::kReset, {}});
+                       }),
+              testing::ElementsAre(
+                  R"({"t_us":1000,"dir":"connect","conn":0,"text":"ok"})",
+                  R"({"t_us":1000,"dir":"connect","conn":1,"text":"ok"})",
+                  R"({"t_us":2000,"dir":"to_device","conn":1,"hex":"41"})",
+                  R"({"t_us":3000,"dir":"from_device","conn":0,"hex":"41"})",
+                  R"({"t_us":4000,"dir":"disconnect","conn":0,"text":"client-half-close"})",
+                  R"({"t_us":5000,"dir":"disconnect","conn":0,"text":"device-eof"})",
+                  R"({"t_us":6000,"dir":"disconnect","conn":1,"text":"client-reset"})"));
+}
+
+TEST_F(CaptureOfAWire, HasPartsOfABus) {
+  const std::array bytes{std::byte{1}, std::byte{2}};
+  EXPECT_THAT(recorded(LinkKind::kBus,
+                       [&](LogOfOverheard& log) {
+                         log.on_bus({.begin = at(1ms),
+                                     .end = at(2ms),
+                                     .address = 18,
+                                     .bytes = bytes,
+                                     .acks = "AAN",
+                                     .ending = BusPart::Ending::kNextStart});
+                         log.on_bus({.begin = at(2ms),
+                                     .end = at(3ms),
+                                     .address = 18,
+                                     .is_read = true,
+                                     .bytes = bytes,
+                                     .acks = "A",
+                                     .error = ErrorCode::kBusy});
+                       }),
+              testing::ElementsAre(
+                  R"({"t_us":1000,"op":"write","addr":18,"hex":"0102","ack":"AAN","stop":false})",
+                  R"({"t_us":2000,"op":"read","addr":18,"hex":"0102","ack":"A","error":")" +
+                      std::string{describe(ErrorCode::kBusy)} + R"("})"));
+}
+
+TEST_F(CaptureOfAWire, SaysOfItselfOnlyWhatWasAskedFor) {
+  const CaptureSubject subject{
+      .device = {}, .make_dissector = {}, .target = "tcp:lab:1", .epoch_ns = 7};
+  (void)begin(path_, {}, subject);
+  (void)begin(other_, {.format = CaptureFormat::kPcapng, .is_redacted = true}, subject);
+  const auto whole = nlohmann::json::parse(read_trace(path_)->header);
+  EXPECT_EQ(whole["target"], "tcp:lab:1");
+  EXPECT_EQ(whole["epoch_ns"], 7);
+  EXPECT_EQ(whole.size(), 6U) << "format, device, title, source: nothing of who made it";
+  std::ifstream file{other_};
+  const std::string content{std::istreambuf_iterator<char>{file}, {}};
+  EXPECT_THAT(content, testing::Not(testing::HasSubstr("lab")));
+}
+
+TEST_F(CaptureOfAWire, RotatesIntoWholeFiles) {
+  for (const auto format : {CaptureFormat::kLines, CaptureFormat::kPcapng}) {
+    const auto first = other_.substr(0, other_.size() - 7) + ".1.pcapng";
+    {
+      LogOfOverheard log{
+          begin(other_,
+                {.format = format, .rotation = CaptureFile::Rotation{.bytes = 2'000, .files = 2}}),
+          LinkKind::kStream};
+      for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdle);
+    }
+    const auto before = read_trace(first).value().events;
+    const auto after = read_trace(other_).value().events;
+    ASSERT_FALSE(before.empty());
+    ASSERT_FALSE(after.empty());
+    EXPECT_EQ(after.front().time, before.back().time + 1ms) << "nothing is lost in between";
+    EXPECT_EQ(after.back().time, at(99ms));
+    EXPECT_LE(fs::file_size(other_), 2'000U);
+    EXPECT_LE(fs::file_size(first), 2'000U);
+    fs::remove(first);
+  }
+}
+
+TEST_F(CaptureOfAWire, OfPacketsEndsWithAWholeOneWhereTheDiskIsFull) {
+  {
+    const LimitedFileSize limit{2'000};
+    LogOfOverheard log{begin(other_, {.format = CaptureFormat::kPcapng}), LinkKind::kStream};
+    for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdle);
+  }
+  const auto reader = CaptureReader::open(UserFile::open(other_).value(), other_).value();
+  CaptureRecord record;
+  int records = 0;
+  while (reader->next(record).value()) ++records;
+  EXPECT_GT(records, 3);
+  EXPECT_LT(records, 100);
+  EXPECT_EQ(reader->warning(), "");
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ const std::vector<Step>& steps() {
         {"conformance/stream_bench.cpp", "the port of the rig that `armjig conformance` opened"},
         {"conformance/bus_bench.cpp", "the bus of the rig that `armjig conformance` opened"},
         {"conformance/morap/chapters/bus.cpp", "the same bus, by way of the bench"},
-        {"conformance/program_check.cpp", "hands on what a program writes to an emulated bus"},
+        {"emulators/memory/overheard.cpp", "hands on what a program writes to an emulated bus"},
         {"emulators/morap/defects/defects.cpp", "an emulated node"},
         {"harness/drive/parol6/drive_loop.cpp", "whoever makes a loop hands it the port of a rig"},
         {"emulators/lab/i2c_adapter.cpp", "the other end: a virtual bus for other programs"},
