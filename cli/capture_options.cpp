@@ -45,18 +45,18 @@ std::optional<CaptureFile::Rotation> parse_rotation(std::string_view text) {
 
 }  // namespace
 
-CLI::Option* add_capture_options(CLI::App& app, CaptureOptions& options) {
-  auto* file = app.add_option("--capture", options.file,
-                              "write every byte that passes to this file: .pcapng, or .jsonl and "
-                              "'-' for a text")
-                   ->type_name("FILE");
+CLI::Option* add_capture_options(CLI::App& app, CaptureOptions& options, const std::string& file) {
+  auto* option = app.add_option(file, options.file,
+                                "write every byte that passes to this file: .pcapng, or .jsonl and "
+                                "'-' for a text")
+                     ->type_name("FILE");
   app.add_option("--rotate", options.rotate,
                  "begin another file when one has so many bytes, and keep so many files, as in "
                  "100MB,10")
       ->type_name("SIZE,COUNT");
   app.add_flag("--redact", options.is_redacted,
                "leave out of the recording's header who made it and where: target, and so on");
-  return file;
+  return option;
 }
 
 Outcome<CaptureFile> open_capture_file(std::string_view option, const CaptureOptions& options) {

@@ -20,8 +20,9 @@ struct CaptureOptions {
   bool is_redacted = false;
 };
 
-/// Adds `--capture`, `--rotate` and `--redact`. Answers the first one.
-CLI::Option* add_capture_options(CLI::App& app, CaptureOptions& options);
+/// Adds `--rotate`, `--redact`, and before them the file, which it answers.
+CLI::Option* add_capture_options(CLI::App& app, CaptureOptions& options,
+                                 const std::string& file = "--capture");
 
 /// Reads the options and opens the file. Problems: `kBadValue`, and those of `open_output`.
 [[nodiscard]] Outcome<CaptureFile> open_capture_file(std::string_view option,

@@ -44,6 +44,7 @@ void add_emulate(CLI::App& app, Devices devices, Action& action);
 void add_kin(CLI::App& app, Devices devices, Action& action);
 void add_lab(CLI::App& app, Devices devices, Action& action);
 void add_latency(CLI::App& app, Devices devices, Action& action);
+void add_record(CLI::App& app, Devices devices, Action& action);
 void add_trace(CLI::App& app, Devices devices, Action& action);
 void add_watch(CLI::App& app, Devices devices, Action& action);
 

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
-#include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/capture_options.hpp"
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
-#include "cli/device_inputs.hpp"
-#include "cli/program_judge.hpp"
 #include "cli/report_files.hpp"
+#include "cli/serving.hpp"
 #include "cli/terminal.hpp"
 #include "emulators/host/host.hpp"
-#include "emulators/lab/virtual_i2c.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -58,47 +51,34 @@ struct Options {
   std::string colour;
 };
 
-HostOptions host_options(const Options& options) {
-  HostOptions host;
+// How a device is served depends on its kind of port.
+
+Outcome<HostOptions> how_to_serve(const OnStream& /*kind*/, const Options& options) {
+  auto host = server_options();
   if (options.wants_pty || !options.pty.link.empty() || !options.wants_tcp) host.pty = options.pty;
   if (options.wants_tcp) host.tcp = options.tcp;
   host.speed = options.speed;
-  host.on_signal = HostOptions::OnSignal::kStop;
-  host.log = [](std::string_view line) { fmt::print(stderr, "armjig: {}\n", line); };
   return host;
 }
 
-/// Programs find a virtual bus only in its `environment`.
-void announce(const Options& options, const std::vector<std::string>& targets,
-              const std::vector<std::string>& environment = {}) {
-  if (options.wants_json) {
-    nlohmann::ordered_json line{
-        {"schema", "armjig.emulate/1"}, {"device", options.device}, {"listening", targets}};
-    if (!environment.empty()) line["environment"] = environment;
-    line["pid"] = ::getpid();
-    fmt::print("{}\n", line.dump());
-  } else if (!environment.empty()) {
-    fmt::print("listening {} for programs that are started with\n  {} PROGRAM\n", targets.front(),
-               fmt::join(environment, " "));
-  } else {
-    const auto link = options.pty.link.empty() ? targets.size() : std::size_t{1};
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-      fmt::print("listening {}{}\n", targets[i], i == link ? " (link)" : "");
-    }
+Outcome<HostOptions> how_to_serve(const OnServer& kind, const Options& options) {
+  if (options.wants_pty || !options.pty.link.empty()) {
+    return problem(ErrorCode::kUnsupported, options.device,
+                   "it is a TCP server and has no pseudo-terminal; leave out --pty, --link");
   }
-  std::fflush(stdout);  // whoever waits for the line may be behind a pipe
+  auto host = server_options();
+  host.tcp = options.tcp;
+  if (!options.wants_tcp) host.tcp->port = kind.tcp_port;
+  host.speed = options.speed;
+  return host;
 }
 
-void print_statistics(const HostStatistics& statistics) {
-  const auto& links = statistics.links;
-  fmt::print(stderr,
-             "armjig: {} clients served, {} refused; {} bytes in, {} bytes out, {} frames "
-             "dropped\n",
-             links.clients, links.refused, links.bytes_in, links.bytes_out, links.frames_dropped);
-  if (statistics.lost > Duration::zero()) {
-    fmt::print(stderr, "armjig: this machine is too slow: {:.3f} s of device time were lost\n",
-               std::chrono::duration<double>{statistics.lost}.count());
+Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const Options& options) {
+  if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1) {
+    return problem(ErrorCode::kUnsupported, options.device,
+                   "a bus takes --set, --bus, --json, --check and --capture, and no other option");
   }
+  return HostOptions{};
 }
 
 Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) {
@@ -126,95 +106,14 @@ std::string target_of(const DeviceOptions& settings) {
   return text;
 }
 
-/// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
-constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
-
-Exit conclude(ProgramCheck& check, const Options& options, const ReportOutputs& files) {
-  const auto result = check.finish();
-  fmt::print("{}\n", options.wants_json ? to_json(result)
-                                        : to_text(result, style_of(options.colour, stdout)));
-  files.put(result);
-  return static_cast<Exit>(conclusion_of(result));
-}
-
-/// Until it is stopped. Lines on standard input do what can be done beside the device.
-Outcome<void> host(AnyHosted hosted, const HostOptions& how, const Options& options) {
-  const bool takes_inputs = has_standard_input();
-  const auto inputs = std::visit([](const auto& device) { return device->inputs(); }, hosted);
-  auto host = Host::open(std::move(hosted), how);
-  if (!host) return tl::unexpected{host.error()};
-  announce(options, host->targets());
-  {
-    std::optional<DeviceInputs> by_hand;
-    if (takes_inputs && !inputs.empty()) {
-      by_hand.emplace(inputs, [&host](auto name, auto value, auto tell) {
-        host->set_input(std::move(name), value, std::move(tell));
-      });
-    }
-    host->run();
-  }
-  print_statistics(host->statistics());
-  return {};
-}
-
-Outcome<void> serve(std::unique_ptr<HostedStream> hosted, const OnStream& /*kind*/,
-                    const Options& options) {
-  return host(std::move(hosted), host_options(options), options);
-}
-
-Outcome<void> serve(std::unique_ptr<HostedServer> hosted, const OnServer& kind,
-                    const Options& options) {
-  if (options.wants_pty || !options.pty.link.empty()) {
-    return problem(ErrorCode::kUnsupported, options.device,
-                   "it is a TCP server and has no pseudo-terminal; leave out --pty, --link");
-  }
-  auto how = host_options(options);
-  how.pty.reset();
-  how.tcp = options.tcp;
-  if (!options.wants_tcp) how.tcp->port = kind.tcp_port;
-  return host(std::move(hosted), how, options);
-}
-
-/// Blocks the signals that end a server, for this thread and those that it starts.
-sigset_t block_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
-Outcome<void> serve(std::unique_ptr<HostedBus> hosted, const OnBus& /*kind*/,
-                    const Options& options) {
-  if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1) {
-    return problem(ErrorCode::kUnsupported, options.device,
-                   "a bus takes --set, --bus, --json and --check, and no other option");
-  }
-  const auto signals = block_signals();
-  const auto i2c = VirtualI2c::open(std::move(hosted), options.bus);
-  if (!i2c) return tl::unexpected{i2c.error()};
-  announce(options, {"i2c:" + i2c->path()}, i2c->environment());
-  int signal = 0;
-  ::sigwait(&signals, &signal);
-  return {};
-}
-
 Exit emulate(Devices devices, const Options& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
   const auto found = find_device(devices, options.device);
   if (!found) return report(found.error());
   const auto& device = **found;
-  std::unique_ptr<ProgramCheck> check;
-  if (options.wants_check) {
-    // A program waits for each transaction of a bus, so no pause is seen shorter than it was.
-    const auto noise = std::holds_alternative<OnBus>(device.port)
-                           ? Duration::zero()
-                           : std::chrono::duration_cast<Duration>(kSchedulingNoise * options.speed);
-    auto made = make_program_check(device, {noise});
-    if (!made) return report(made.error());
-    check = *std::move(made);
-  }
+  const auto check = check_if(options.wants_check, device, options.speed);
+  if (!check) return report(check.error());
   const auto files = ReportOutputs::open(options.files, options.wants_json ? "--json" : "");
   if (!files) return report(files.error());
   const auto file = open_capture_file("--capture", options.capture);
@@ -228,20 +127,15 @@ Exit emulate(Devices devices, const Options& options) {
         auto emulated = cli::emulate(kind, *settings, options.device);
         if (!emulated) return tl::unexpected{emulated.error()};
         auto hosted = capture->watch(*std::move(emulated));
-        if (check) hosted = check->watch(std::move(hosted));
-        return serve(std::move(hosted), kind, options);
+        if (*check) hosted = (*check)->watch(std::move(hosted));
+        auto how = how_to_serve(kind, options);
+        if (!how) return tl::unexpected{how.error()};
+        return serve(std::move(hosted),
+                     {options.device, *std::move(how), options.bus, options.wants_json});
       },
       device.port);
   if (!served) return report(served.error());
-  return check ? conclude(*check, options, *files) : Exit::kPassed;
-}
-
-void add_check(CLI::App& command, Options& options) {
-  auto* check =
-      command.add_flag("--check", options.wants_check, "judge the program that talks to it");
-  // --json says how to announce, and is the report's form then.
-  for (auto* file : add_report_files(command, options.files, "json")) file->needs(check);
-  add_colour_option(command, options.colour);
+  return *check ? conclude(**check, options.wants_json, options.colour, *files) : Exit::kPassed;
 }
 
 }  // namespace
@@ -276,7 +170,7 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
   command->add_flag("--json", options->wants_json,
                     "say where it listens as one line of JSON; the report of --check too");
   add_capture_options(*command, options->capture);
-  add_check(*command, *options);
+  add_program_check(*command, options->wants_check, options->files, options->colour);
   command->callback([options, tcp, devices, &action] {
     options->wants_tcp = tcp->count() > 0;
     action = [options, devices] { return emulate(devices, *options); };

@@ -101,7 +101,7 @@ Report ProgramCheck::finish() {
   if (const auto overlooked = seconds(at(checker_->overlooked())); overlooked > 0) {
     report.facts.emplace_back(
         "overlooked",
-        fmt::format("{:.3f} s ({:.1f} %): this emulator was late itself then", overlooked,
+        fmt::format("{:.3f} s ({:.1f} %): armjig was late itself then", overlooked,
                     100 * overlooked / std::max(seconds(now_), overlooked)));
   }
   for (const auto& requirement : entry_.requirements()) {
@@ -126,7 +126,7 @@ ReportRow ProgramCheck::row_of(const Requirement& requirement) const {
     }
   } else if (checker_->is_in_doubt(requirement.id)) {
     row.verdict = Verdict::kInconclusive;
-    row.actual = "it looked broken, but only while this emulator was late itself";
+    row.actual = "it looked broken, but only while armjig was late itself";
   } else if (!checker_->had_occasion(requirement)) {
     row.verdict = Verdict::kSkipped;
     row.actual = checker_->messages() == 0

@@ -4,6 +4,7 @@
 #include <utility>  // before Asio, which forgets it
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -19,6 +20,7 @@ namespace armjig {
 namespace {
 
 using namespace std::chrono_literals;
+using boost::asio::posix::stream_descriptor;
 using boost::system::error_code;
 using Wall = PacedClock::Wall;
 
@@ -47,13 +49,22 @@ class Host::LoopOnAsio final : public Loop {
         reached_{front_->begin()},
         clock_{options_.speed, Wall::now(), reached_},
         timer_{context_},
-        signals_{context_} {
+        signals_{context_},
+        waker_{context_} {
+    if (const auto file = device_.wakes_by()) {
+      waker_.assign(*file);
+      wait_for_device();
+    }
     if (options_.on_signal == HostOptions::OnSignal::kNothing) return;
     signals_.add(SIGINT);
     signals_.add(SIGTERM);
     signals_.async_wait([this](const error_code& error, int) {
       if (!error) stop();
     });
+  }
+
+  ~LoopOnAsio() override {
+    if (waker_.is_open()) waker_.release();  // the device closes it
   }
 
   [[nodiscard]] Outcome<void> listen() {
@@ -120,6 +131,7 @@ class Host::LoopOnAsio final : public Loop {
     device_.advance_to(catch_up());
     front_->forward();
     for (const auto& line : device_.take_log()) log(line);
+    if (device_.is_gone()) stop();
     const auto now = Wall::now();
     const auto next = device_.next_event();
     const auto due = next ? std::min(clock_.wall_time(*next, now), now + kKeepUp) : now + kKeepUp;
@@ -129,6 +141,15 @@ class Host::LoopOnAsio final : public Loop {
   void log(std::string_view line) const override { options_.log(line); }
 
  private:
+  void wait_for_device() {
+    waker_.async_wait(stream_descriptor::wait_read, [this](const error_code& error) {
+      if (error) return;
+      device_.wake(catch_up());
+      pump();
+      wait_for_device();
+    });
+  }
+
   void pump_soon() {
     if (std::exchange(is_pump_posted_, true)) return;
     boost::asio::post(context_, [this] {
@@ -154,6 +175,7 @@ class Host::LoopOnAsio final : public Loop {
   Lookout lookout_{kKeepUp + kLate, Wall::now()};
   boost::asio::steady_timer timer_;
   boost::asio::signal_set signals_;
+  stream_descriptor waker_;  ///< of a device that is not emulated
   bool is_pump_posted_ = false;
 };
 

@@ -22,7 +22,12 @@ class StreamFront final : public Front {
       auto added = add(open_pty_link(loop_.context(), *options.pty, events()));
       if (!added) return added;
     }
-    if (options.tcp) return add(open_tcp_link(loop_.context(), *options.tcp, events()));
+    if (options.tcp) {
+      auto added = add(open_tcp_link(loop_.context(), *options.tcp, events()));
+      if (!added) return added;
+    }
+    // On its only link, a device that speaks first is heard.
+    if (links_.size() == 1) listener_ = links_.front().get();
     return {};
   }
 

@@ -39,6 +39,13 @@ class HostedDevice {
   [[nodiscard]] virtual std::span<const DeviceInput> inputs() const { return {}; }
   /// What the device has written to its log since the last call.
   [[nodiscard]] virtual std::vector<std::string> take_log() { return {}; }
+
+  /// Of one that is not emulated but at the other end of a link: a file that is readable when
+  /// `wake` has something to read there.
+  [[nodiscard]] virtual std::optional<int> wakes_by() const { return std::nullopt; }
+  virtual void wake(Instant /*time*/) {}
+  /// It will never do anything again.
+  [[nodiscard]] virtual bool is_gone() const { return false; }
 };
 
 /// On a byte stream.

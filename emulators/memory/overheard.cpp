@@ -39,6 +39,11 @@ class Overheard : public Hosted {
   }
   [[nodiscard]] std::span<const DeviceInput> inputs() const override { return device_->inputs(); }
   [[nodiscard]] std::vector<std::string> take_log() override { return device_->take_log(); }
+  [[nodiscard]] std::optional<int> wakes_by() const override { return device_->wakes_by(); }
+  void wake(Instant time) override {
+    do_and_tell([&] { device_->wake(time); });
+  }
+  [[nodiscard]] bool is_gone() const override { return device_->is_gone(); }
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
     bool is_taken = false;
     do_and_tell([&] {

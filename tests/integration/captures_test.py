@@ -30,7 +30,7 @@ RECORDINGS = ("demo/start-and-halt", "parol6/gripper_can_burst_a", "parol6/estop
 AS_ROOT = "Running as user"
 PATIENCE = 60
 IDLE = b"\xff\xff\xff\x34" + bytes(36) + b"\xff" + bytes(12) + b"\xe4\x01\x02"
-ANSWER_SIZE = 58
+ANSWER_SIZE = 60
 
 
 def run(*words):

@@ -110,7 +110,7 @@ TEST(ProgramCheck, SaysWhatItCouldNotJudgeBecauseItsHostWasLate) {
   EXPECT_EQ(row_of(report, "parol6.host.gap-in-motion").verdict, Verdict::kInconclusive);
   EXPECT_THAT(report.facts,
               testing::Contains(std::pair<std::string, std::string>{
-                  "overlooked", "0.600 s (20.0 %): this emulator was late itself then"}));
+                  "overlooked", "0.600 s (20.0 %): armjig was late itself then"}));
 }
 
 TEST(ProgramCheck, HearsTheMessagesOfABusWhenTheyAreOver) {

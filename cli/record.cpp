@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "cli/capture_options.hpp"
+#include "cli/checks.hpp"
+#include "cli/device.hpp"
+#include "cli/report_files.hpp"
+#include "cli/serving.hpp"
+#include "cli/terminal.hpp"
+#include "emulators/host/relay.hpp"
+#include "harness/core/number.hpp"
+#include "harness/rig/real_target.hpp"
+
+namespace armjig::cli {
+namespace {
+
+constexpr auto kHelp =
+    "Stands between a program and a device, passes every byte on, and records it.\n"
+    "\n"
+    "  armjig record DEVICE --listen pty:/tmp/arm --target TARGET --out session.pcapng\n"
+    "  armjig record DEVICE --listen tcp:4000 --target tcp:HOST:PORT --out session.jsonl\n"
+    "  armjig record DEVICE --listen i2c:1 --target emulated: --out session.pcapng\n"
+    "\n"
+    "Start the program on what it prints in place of the device; on a bus with the environment\n"
+    "that it prints. It is a cable: nothing is changed, held back or refused, whatever the "
+    "program\n"
+    "sends. With --check the program is judged as by 'armjig emulate --check'. When this process\n"
+    "was late itself, it says so, and holds it against nobody. Ctrl-C ends it, with a whole file.\n"
+    "\n"
+    "Exit codes: 0 recorded, 1 findings of --check, 3 the device is not there, or gone.";
+
+struct Options {
+  std::string device;
+  std::string listen;
+  std::string target;
+  CaptureOptions capture;
+  bool wants_json = false;
+  bool wants_check = false;
+  ReportFiles files;
+  std::string colour;
+};
+
+tl::unexpected<Problem> bad_place(const Options& options, std::string_view hint) {
+  return problem(ErrorCode::kBadValue, "--listen " + options.listen, std::string{hint});
+}
+
+/// `[HOST:]PORT`
+std::optional<TcpOptions> parse_tcp_place(std::string_view text) {
+  TcpOptions tcp;
+  const auto colon = text.rfind(':');
+  if (colon != std::string_view::npos) {
+    tcp.address = text.substr(0, colon);
+    if (tcp.address.starts_with('[') && tcp.address.ends_with(']')) {
+      tcp.address = tcp.address.substr(1, tcp.address.size() - 2);
+    }
+    text.remove_prefix(colon + 1);
+  }
+  const auto port = whole_text_as<std::uint16_t>(text);
+  if (!port || tcp.address.empty()) return std::nullopt;
+  tcp.port = *port;
+  return tcp;
+}
+
+Outcome<Serving> parse_listen(const Options& options, const Device& device) {
+  constexpr int kLastBus = 255;
+  Serving serving{options.device, server_options(), 1, options.wants_json};
+  std::string_view place = options.listen;
+  const auto takes = [&place](std::string_view scheme) {
+    if (!place.starts_with(scheme)) return false;
+    place.remove_prefix(scheme.size());
+    return true;
+  };
+  if (std::holds_alternative<OnBus>(device.port)) {
+    if (!takes("i2c:")) return bad_place(options, "this device is on a bus: write i2c:N");
+    (void)takes("/dev/i2c-");
+    const auto number = whole_text_as<int>(place);
+    if (!number || *number < 0 || *number > kLastBus) {
+      return bad_place(options, "write i2c:N, 0 to 255");
+    }
+    serving.bus = *number;
+  } else if (takes("pty:")) {
+    if (std::holds_alternative<OnServer>(device.port)) {
+      return bad_place(options, "it is a TCP server and has no pseudo-terminal: write tcp:PORT");
+    }
+    serving.how.pty = PtyOptions{std::string{place}};
+  } else if (takes("tcp:")) {
+    serving.how.tcp = parse_tcp_place(place);
+    if (!serving.how.tcp) return bad_place(options, "write tcp:PORT or tcp:HOST:PORT");
+  } else {
+    return bad_place(options, "write pty:, pty:PATH, tcp:PORT or tcp:HOST:PORT");
+  }
+  return serving;
+}
+
+/// The device, whether it is emulated or at the other end of a link.
+template <class Kind>
+Outcome<std::unique_ptr<typename Kind::Hosted>> open_device(const Kind& kind, const Target& target,
+                                                            RelayStatistics& statistics) {
+  if (target.is_emulated()) return cli::emulate(kind, target.options, target.text);
+  if constexpr (std::is_same_v<Kind, OnBus>) {
+    return problem(ErrorCode::kUnsupported, target.text,
+                   "adapters do whole transactions only, so that a tap would not be transparent; "
+                   "of a bus only an emulated one can be recorded");
+  } else {
+    auto port = open_target<typename Kind::Port>(target, line_of(kind));
+    if (!port) return tl::unexpected{port.error()};
+    if constexpr (std::is_same_v<Kind, OnStream>) {
+      return relay(*std::move(port), statistics);
+    } else {
+      auto relayed = relay(*std::move(port), statistics);
+      if (!relayed) return problem(relayed.error().code, target.text, "it cannot be waited for");
+      return *std::move(relayed);
+    }
+  }
+}
+
+void print_lateness(const RelayStatistics& statistics) {
+  const auto us = [](Duration duration) {
+    return std::chrono::duration<double, std::micro>{duration}.count();
+  };
+  if (statistics.pieces > 0) {
+    fmt::print(stderr,
+               "armjig: {} pieces passed on, each held for {:.1f} us, the longest {:.1f} us\n",
+               statistics.pieces, us(statistics.held) / static_cast<double>(statistics.pieces),
+               us(statistics.longest_held));
+  }
+  if (statistics.overlooks > 0) {
+    fmt::print(stderr,
+               "armjig: late itself {} times, {:.3f} s together; nobody is blamed for that\n",
+               statistics.overlooks, std::chrono::duration<double>{statistics.overlooked}.count());
+  }
+}
+
+Exit record(Devices devices, const Options& options) {
+  const auto found = find_device(devices, options.device);
+  if (!found) return report(found.error());
+  const auto& device = **found;
+  const auto target = parse_target(options.target);
+  if (!target) return report(target.error());
+  const auto serving = parse_listen(options, device);
+  if (!serving) return report(serving.error());
+  const auto check = check_if(options.wants_check, device, 1);
+  if (!check) return report(check.error());
+  const auto claimed = claim_standard_output(options.wants_json ? "--json" : "");
+  if (!claimed) return report(claimed.error());
+  const auto files = ReportOutputs::open(options.files);
+  if (!files) return report(files.error());
+  const auto file = open_capture_file("--out", options.capture);
+  if (!file) return report(file.error());
+  RelayStatistics statistics;
+  std::optional<HostedCapture> capture;
+  const auto served = std::visit(
+      [&](const auto& kind) -> Outcome<void> {
+        auto opened = open_device(kind, *target, statistics);
+        if (!opened) return tl::unexpected{opened.error()};
+        auto begun = HostedCapture::open(*file, device, options.target, epoch_of({}));
+        if (!begun) return tl::unexpected{begun.error()};
+        capture = *std::move(begun);
+        auto hosted = capture->watch(*std::move(opened));
+        if (*check) hosted = (*check)->watch(std::move(hosted));
+        return serve(std::move(hosted), *serving);
+      },
+      device.port);
+  if (!served) return report(served.error());
+  print_lateness(statistics);
+  const auto exit =
+      *check ? conclude(**check, options.wants_json, options.colour, *files) : Exit::kPassed;
+  if (!statistics.failure) return exit;
+  (void)report(
+      {statistics.failure->code, options.target, "the device has gone; what passed is kept"});
+  return exit == Exit::kFindings ? exit : Exit::kRig;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("record", with_example(kHelp, devices));
+  const auto options = std::make_shared<Options>();
+  add_device_argument(*command, options->device, devices);
+  command
+      ->add_option("--listen", options->listen,
+                   "where the program finds it: pty:[PATH], tcp:[HOST:]PORT, i2c:N")
+      ->type_name("PLACE")
+      ->required();
+  command->add_option("--target", options->target, "where the device is, as everywhere")
+      ->type_name("TARGET")
+      ->required();
+  add_capture_options(*command, options->capture, "--out")->required();
+  command->add_flag("--json", options->wants_json,
+                    "say where it listens as one line of JSON; the report of --check too");
+  add_program_check(*command, options->wants_check, options->files, options->colour);
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return record(devices, *options); };
+  });
+}
+
+}  // namespace armjig::cli

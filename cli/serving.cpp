@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/serving.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cli/device_inputs.hpp"
+#include "cli/program_judge.hpp"
+#include "cli/terminal.hpp"
+#include "emulators/lab/virtual_i2c.hpp"
+
+namespace armjig::cli {
+namespace {
+
+/// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
+constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
+
+/// Programs find a virtual bus only in its `environment`.
+void announce(const Serving& serving, const std::vector<std::string>& targets,
+              const std::vector<std::string>& environment = {}) {
+  if (serving.wants_json) {
+    nlohmann::ordered_json line{
+        {"schema", "armjig.emulate/1"}, {"device", serving.device}, {"listening", targets}};
+    if (!environment.empty()) line["environment"] = environment;
+    line["pid"] = ::getpid();
+    fmt::print("{}\n", line.dump());
+  } else if (!environment.empty()) {
+    fmt::print("listening {} for programs that are started with\n  {} PROGRAM\n", targets.front(),
+               fmt::join(environment, " "));
+  } else {
+    const bool has_link = serving.how.pty && !serving.how.pty->link.empty();
+    const auto link = has_link ? std::size_t{1} : targets.size();
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      fmt::print("listening {}{}\n", targets[i], i == link ? " (link)" : "");
+    }
+  }
+  std::fflush(stdout);  // whoever waits for the line may be behind a pipe
+}
+
+void print_statistics(const HostStatistics& statistics) {
+  const auto& links = statistics.links;
+  fmt::print(stderr,
+             "armjig: {} clients served, {} refused; {} bytes in, {} bytes out, {} frames "
+             "dropped\n",
+             links.clients, links.refused, links.bytes_in, links.bytes_out, links.frames_dropped);
+  if (statistics.lost > Duration::zero()) {
+    fmt::print(stderr, "armjig: this machine is too slow: {:.3f} s of device time were lost\n",
+               std::chrono::duration<double>{statistics.lost}.count());
+  }
+}
+
+/// Blocks the signals that end a server, for this thread and those that it starts.
+sigset_t block_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+Outcome<void> serve_bus(std::unique_ptr<HostedBus> hosted, const Serving& serving) {
+  const auto signals = block_signals();
+  const auto i2c = VirtualI2c::open(std::move(hosted), serving.bus);
+  if (!i2c) return tl::unexpected{i2c.error()};
+  announce(serving, {"i2c:" + i2c->path()}, i2c->environment());
+  int signal = 0;
+  ::sigwait(&signals, &signal);
+  return {};
+}
+
+}  // namespace
+
+HostOptions server_options() {
+  HostOptions host;
+  host.on_signal = HostOptions::OnSignal::kStop;
+  host.log = [](std::string_view line) { fmt::print(stderr, "armjig: {}\n", line); };
+  return host;
+}
+
+Outcome<void> serve(AnyHosted hosted, const Serving& serving) {
+  if (auto* const bus = std::get_if<std::unique_ptr<HostedBus>>(&hosted)) {
+    return serve_bus(std::move(*bus), serving);
+  }
+  const bool takes_inputs = has_standard_input();
+  const auto inputs = std::visit([](const auto& device) { return device->inputs(); }, hosted);
+  auto host = Host::open(std::move(hosted), serving.how);
+  if (!host) return tl::unexpected{host.error()};
+  announce(serving, host->targets());
+  {
+    std::optional<DeviceInputs> by_hand;
+    if (takes_inputs && !inputs.empty()) {
+      by_hand.emplace(inputs, [&host](auto name, auto value, auto tell) {
+        host->set_input(std::move(name), value, std::move(tell));
+      });
+    }
+    host->run();
+  }
+  print_statistics(host->statistics());
+  return {};
+}
+
+Outcome<std::unique_ptr<ProgramCheck>> check_if(bool is_wanted, const Device& device,
+                                                double speed) {
+  if (!is_wanted) return nullptr;
+  // A program waits for each transaction of a bus, so no pause is seen shorter than it was.
+  const auto noise = std::holds_alternative<OnBus>(device.port)
+                         ? Duration::zero()
+                         : std::chrono::duration_cast<Duration>(kSchedulingNoise * speed);
+  return make_program_check(device, {noise});
+}
+
+void add_program_check(CLI::App& command, bool& is_wanted, ReportFiles& files,
+                       std::string& colour) {
+  auto* check = command.add_flag("--check", is_wanted, "judge the program that talks to it");
+  // --json says how to announce, and is the report's form then.
+  for (auto* file : add_report_files(command, files, "json")) file->needs(check);
+  add_colour_option(command, colour);
+}
+
+Exit conclude(ProgramCheck& check, bool wants_json, const std::string& colour,
+              const ReportOutputs& files) {
+  const auto result = check.finish();
+  fmt::print("{}\n", wants_json ? to_json(result) : to_text(result, style_of(colour, stdout)));
+  files.put(result);
+  return static_cast<Exit>(conclusion_of(result));
+}
+
+}  // namespace armjig::cli

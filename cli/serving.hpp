@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "cli/device.hpp"
+#include "cli/report_files.hpp"
+#include "conformance/program_check.hpp"
+#include "emulators/host/host.hpp"
+#include "emulators/memory/hosted.hpp"
+#include "harness/core/error.hpp"
+
+/// What the subcommands share at which programs find a device.
+namespace armjig::cli {
+
+/// Where and how a device is served.
+struct Serving {
+  std::string device;
+  HostOptions how;  ///< not of a bus
+  int bus = 1;      ///< the N of /dev/i2c-N
+  bool wants_json = false;
+};
+
+/// With signals and a log, as servers have them.
+[[nodiscard]] HostOptions server_options();
+
+/// Says where it listens, and serves it until a signal comes. Lines on standard input do what can
+/// be done beside it. Problems: those of `Host::open` and `VirtualI2c::open`.
+[[nodiscard]] Outcome<void> serve(AnyHosted hosted, const Serving& serving);
+
+/// Who judges the programs; nullptr if nobody asked. `speed` is device time over wall time.
+/// Problems: those of `make_program_check`.
+[[nodiscard]] Outcome<std::unique_ptr<ProgramCheck>> check_if(bool is_wanted, const Device& device,
+                                                              double speed);
+
+/// Adds `--check` with the files and colours of its report.
+void add_program_check(CLI::App& command, bool& is_wanted, ReportFiles& files, std::string& colour);
+
+/// The verdict: printed, and in the files that were asked for.
+[[nodiscard]] Exit conclude(ProgramCheck& check, bool wants_json, const std::string& colour,
+                            const ReportOutputs& files);
+
+}  // namespace armjig::cli
