@@ -75,8 +75,9 @@ Outcome<HostOptions> how_to_serve(const OnServer& kind, const Options& options) 
 
 Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const Options& options) {
   if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1) {
-    return problem(ErrorCode::kUnsupported, options.device,
-                   "a bus takes --set, --bus, --json, --check and --capture, and no other option");
+    return problem(
+        ErrorCode::kUnsupported, options.device,
+        "a bus takes --set, --bus, --json and --check, what --capture needs, and no other option");
   }
   return HostOptions{};
 }

@@ -6,6 +6,8 @@ What armjig writes, capinfos and tshark read without a warning, and what editcap
 it, armjig reads. Ends with 77, which CTest takes for skipped, where Wireshark's tools are not.
 """
 
+import csv
+import io
 import json
 import os
 import pathlib
@@ -125,6 +127,66 @@ class Captures(unittest.TestCase):
         self.ok("capinfos", both)
         self.assertEqual({line.get("link", "kinovazed") for line in self.back(both)[1:]},
                          {"kinovazed", "demo", "kinovazed#3"})
+
+    def decoded(self, *words):
+        """The lines of `decode --json`, and the rows of `decode --csv`."""
+        lines = [json.loads(line) for line in self.ok(ARMJIG, "decode", *words, "--json").splitlines()]
+        text = self.ok(ARMJIG, "decode", *words, "--csv")
+        return lines, list(csv.DictReader(io.StringIO(text)))
+
+    def test_a_table_has_what_the_json_has(self):
+        path = self.packets_of("parol6/outputs_sweep_a")
+        lines, rows = self.decoded("parol6", "--file", path)
+        self.assertEqual(len(rows), len(lines))
+        self.assertGreater(len(rows), 20)
+        flags = 0
+        for line, row in zip(lines, rows):
+            self.assertEqual(row["message"], line["message"])
+            self.assertAlmostEqual(float(row["time_s"]) * 1e6, line["t_us"], delta=1)
+            self.assertEqual(row["direction"], line["direction"])
+            for name, field in line["fields"].items():
+                if name in row:  # all but what is the same in every message
+                    self.assertEqual(int(row[name]), field["value"])
+                for flag in [column for column in row if column.startswith(f"{name}.")]:
+                    flags += 1
+                    is_set = flag.removeprefix(f"{name}.") in field["text"].split()
+                    self.assertEqual(row[flag], str(int(is_set)), (flag, field))
+        self.assertGreater(flags, 100)
+        self.assertTrue(all(None not in row and None not in row.values() for row in rows))
+
+    def test_filters_keep_what_they_name(self):
+        path = self.packets_of("parol6/outputs_sweep_a")
+        everything, _ = self.decoded("parol6", "--file", path)
+        half = everything[len(everything) // 2]["t_us"]
+        for words, keeps in (
+                (("--field", "io.out1=1"), lambda one: "out1" in one["fields"]["io"]["text"].split()
+                 if "io" in one["fields"] else False),
+                (("--field", "command=idle"),
+                 lambda one: one["fields"].get("command", {}).get("value") == 255),
+                (("--direction", "from-device"), lambda one: one["direction"] == "from_device"),
+                (("--from", f"{half / 1e6:.6f}"), lambda one: one["t_us"] >= half),
+                (("--to", f"{half / 1e6:.6f}"), lambda one: one["t_us"] <= half)):
+            with self.subTest(words):
+                lines, _ = self.decoded("parol6", "--file", path, *words)
+                self.assertEqual(lines, [one for one in everything if keeps(one)])
+                self.assertTrue(0 < len(lines) < len(everything))
+        three = self.packets_of("kinovazed/connection-three")
+        lines, _ = self.decoded("kinovazed", "--file", three, "--connection", "1")
+        alone = self.folder / "one.pcapng"
+        self.ok(ARMJIG, "trace", "cut", three, alone, "--connection", "1")
+        self.assertEqual(lines, self.decoded("kinovazed", "--file", alone)[0])
+        bus = str(SOURCE / "captures/morap/loop-voltage.jsonl")
+        lines, _ = self.decoded("morap", "--file", bus)
+        self.assertEqual(self.decoded("morap", "--file", bus, "--address", "0x11")[0], lines)
+        code, shown, _ = run(ARMJIG, "decode", "morap", "--file", bus, "--address", "0x12")
+        self.assertEqual((code, shown), (4, ""))
+
+    def test_a_recording_of_several_devices_is_decoded_by_device(self):
+        demo, arm = self.packets_of("demo/start-and-halt"), self.packets_of("parol6/outputs_sweep_a")
+        both = self.folder / "both.pcapng"
+        self.ok(ARMJIG, "trace", "merge", "--out", both, demo, arm)
+        code, _, _ = run(ARMJIG, "decode", "parol6", "--file", str(both))
+        self.assertEqual(code, 0, "nothing of the other device was taken for noise")
 
     def test_a_part_in_time_and_metadata_that_is_taken_away(self):
         text = self.folder / "in.jsonl"
