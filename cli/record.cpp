@@ -150,9 +150,7 @@ Exit record(Devices devices, const Options& options) {
   if (!serving) return report(serving.error());
   const auto check = check_if(options.wants_check, device, 1);
   if (!check) return report(check.error());
-  const auto claimed = claim_standard_output(options.wants_json ? "--json" : "");
-  if (!claimed) return report(claimed.error());
-  const auto files = ReportOutputs::open(options.files);
+  const auto files = ReportOutputs::open(options.files, options.wants_json ? "--json" : "");
   if (!files) return report(files.error());
   const auto file = open_capture_file("--out", options.capture);
   if (!file) return report(file.error());
