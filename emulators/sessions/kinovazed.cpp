@@ -19,6 +19,8 @@ namespace {
 using namespace armjig::sessions;
 using emulation::kArmCallNames;
 
+constexpr std::uint32_t kMostClients = 12;
+
 class Session : public Draft {
  public:
   explicit Session(const Start& start) : Draft{start, TimeUnit::kMillisecond} {
@@ -151,7 +153,7 @@ class Session : public Draft {
 
   // Connections.
   void connect() {
-    if (next_ > 12) return;
+    if (next_ > kMostClients) return;
     add({R"("dir":"connect","conn":{},"text":"ok")", next_});
     open_.push_back(next_++);
     wait(dice_.mostly_low(1, 300));
@@ -167,6 +169,23 @@ class Session : public Draft {
     if (open_.empty() || dice_.one_in(2)) connect();
   }
 
+  void knock() {  // clients that are gone again before they are served
+    constexpr std::array<std::string_view, 2> kHow{"client-reset", "client-close"};
+    for (auto left = dice_.between(1, 3); left > 0 && next_ <= kMostClients; --left) {
+      connect();
+      if (dice_.one_in(3)) say(command(Verb::kFreeze));
+      add({R"("dir":"disconnect","conn":{},"text":"{}")", open_.back(), dice_.one_of(kHow)});
+      open_.pop_back();
+    }
+    pause();
+  }
+  void console() {
+    constexpr std::array kVerbs{Verb::kSetActiveObjective, Verb::kGetObjectivePosition,
+                                Verb::kGetAbsolutePosition};
+    say(command(dice_.one_of(kVerbs)));
+    pause();
+  }
+
   // What befalls the arm.
   void fail() {
     const auto count = dice_.one_in(4) ? -1 : dice_.between(1, 4);
@@ -174,6 +193,16 @@ class Session : public Draft {
            dice_.between(0, 4)});
     pause();
     if (!dice_.one_in(3)) touch({R"("event":"clear_failures")"});
+  }
+  void fail_in_command() {  // before the next look at the arm, if it comes soon enough
+    constexpr std::array kVerbs{Verb::kRetract,   Verb::kSetJoystickMode, Verb::kInitialize,
+                                Verb::kUnfold,    Verb::kFreeze,          Verb::kEStop,
+                                Verb::kQuitEStop, Verb::kMoveJoystick,    Verb::kRunObjective};
+    touch({R"("event":"fail","call":"{}","count":1,"skip":{})", dice_.one_of(kArmCallNames),
+           dice_.between(0, 1)});
+    say(command(dice_.one_of(kVerbs)));
+    pause();
+    touch({R"("event":"clear_failures")"});
   }
   void unplug() {
     touch({R"("event":"unplug")"});
@@ -316,13 +345,25 @@ constexpr auto kFaults = std::to_array<Deed<Session>>({{10, &Session::fail},
                                                        {3, &Session::run},
                                                        {2, &Session::rest}});
 
+constexpr auto kDeaths = std::to_array<Deed<Session>>({{10, &Session::fail_in_command},
+                                                       {4, &Session::knock},
+                                                       {4, &Session::disconnect},
+                                                       {6, &Session::console},
+                                                       {4, &Session::run},
+                                                       {3, &Session::fold},
+                                                       {3, &Session::steer},
+                                                       {3, &Session::choose_mode},
+                                                       {3, &Session::make_ready},
+                                                       {2, &Session::freeze}});
+
 constexpr auto kThemes =
     std::to_array<Theme<Session>>({{"commands", 10, 2'000'000, 60'000'000, kCommands},
                                    {"steering", 5, 2'000'000, 40'000'000, kSteering},
                                    {"objectives", 4, 5'000'000, 80'000'000, kObjectives},
                                    {"framing", 6, 500'000, 10'000'000, kFraming},
                                    {"connections", 6, 1'000'000, 30'000'000, kConnections},
-                                   {"faults", 8, 2'000'000, 40'000'000, kFaults}});
+                                   {"faults", 5, 2'000'000, 40'000'000, kFaults},
+                                   {"deaths", 3, 500'000, 20'000'000, kDeaths}});
 
 }  // namespace
 
