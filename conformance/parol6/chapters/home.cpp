@@ -203,6 +203,21 @@ constexpr Clause kClauses[] = {
     from(kEnabled, Hazard::kHome, "Home after clear error sets the seek speeds.",
          [](BoardBench& board) { expect_begins_anew(board, 103); }),
 
+    must("parol6.home.right-after",
+         "Home begins also right after a jog, a go-to or another code, with no idle frame between.",
+         "document, home; firmware: each code acts in its own pass"),
+    from(kEnabled, Hazard::kHome, "Home right after each of four codes sets the seek speeds.",
+         [](BoardBench& board) {
+           board.act(with_code(kEnable));
+           const auto rest = board.ask(idle());
+           for (const auto& frame :
+                {jog({}), go_to(rest.position), with_code(kClearError), with_code(42)}) {
+             board.act(frame);
+             expect_seek_speeds(board,
+                                fmt::format("code {}, home", static_cast<int>(frame.command)));
+           }
+         }),
+
     must("parol6.home.interrupted",
          "A jog or go-to keeps the stage of homing: the next home command goes on in it, at the "
          "speed "

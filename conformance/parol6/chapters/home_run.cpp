@@ -184,6 +184,24 @@ constexpr Clause kClauses[] = {
            }
          }),
 
+    must("parol6.home.speeds-at-rest",
+         "While the others home, J4 at rest reports a speed of 2050, and J6 when parked 1050.",
+         "firmware; recordings"),
+    from(kHomed, Hazard::kObserve, "J4 said 2050 when homed, J6 1050 while J5 backed off.",
+         [](BoardBench& board) {
+           const auto run = record(board);
+           for (const auto& answer : run.with_bits(kFirstFourHomed)) {
+             board.about("after J4 is homed");
+             board.expect(answer, "speed.j4", 2050);
+           }
+           const auto backing_off = run.with_speed(kFirstFourHomed, kJ5, kHoming[kJ5].back_off);
+           board.expect_true(!backing_off.empty(), "J5 to back off", "it does not");
+           for (const auto& answer : backing_off) {
+             board.about("after J6 is parked");
+             board.expect(answer, "speed.j6", 1050);
+           }
+         }),
+
     must("parol6.home.waits-for-turn",
          "J4, J5 and J6 stand still until their turn in homing has come.", "firmware"),
     from(kHomed, Hazard::kObserve, "J4 to J6 stood still at first, J5 and J6 for longer.",
