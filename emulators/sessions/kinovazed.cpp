@@ -17,6 +17,7 @@ namespace armjig::kinovazed::sessions {
 namespace {
 
 using namespace armjig::sessions;
+using emulation::ArmCall;
 using emulation::kArmCallNames;
 
 constexpr std::uint32_t kMostClients = 12;
@@ -194,15 +195,28 @@ class Session : public Draft {
     pause();
     if (!dice_.one_in(3)) touch({R"("event":"clear_failures")"});
   }
-  void fail_in_command() {  // before the next look at the arm, if it comes soon enough
-    constexpr std::array kVerbs{Verb::kRetract,   Verb::kSetJoystickMode, Verb::kInitialize,
-                                Verb::kUnfold,    Verb::kFreeze,          Verb::kEStop,
-                                Verb::kQuitEStop, Verb::kMoveJoystick,    Verb::kRunObjective};
-    touch({R"("event":"fail","call":"{}","count":1,"skip":{})", dice_.one_of(kArmCallNames),
-           dice_.between(0, 1)});
+  /// What comes before the server looks at the arm again.
+  void order_at_once() {
+    constexpr std::array kVerbs{Verb::kRetract, Verb::kRetract, Verb::kSetJoystickMode,
+                                Verb::kUnfold,  Verb::kFreeze,  Verb::kInitialize,
+                                Verb::kEStop};
     say(command(dice_.one_of(kVerbs)));
     pause();
+  }
+  void fail_in_command() {
+    constexpr std::array kCalls{ArmCall::kReadStatus, ArmCall::kReleaseStick,
+                                ArmCall::kPressHome,  ArmCall::kErase,
+                                ArmCall::kWriteAxes,  ArmCall::kTakeControl};
+    if (dice_.one_in(2)) make_ready();
+    touch({R"("event":"fail","call":"{}","count":1,"skip":{})", to_string(dice_.one_of(kCalls)),
+           dice_.one_in(3) ? 1 : 0});
+    order_at_once();
     touch({R"("event":"clear_failures")"});
+  }
+  void misplace() {
+    if (dice_.one_in(2)) make_ready();
+    touch({R"("event":"mode","value":{})", dice_.between(0, 6)});
+    order_at_once();
   }
   void unplug() {
     touch({R"("event":"unplug")"});
@@ -346,6 +360,7 @@ constexpr auto kFaults = std::to_array<Deed<Session>>({{10, &Session::fail},
                                                        {2, &Session::rest}});
 
 constexpr auto kDeaths = std::to_array<Deed<Session>>({{10, &Session::fail_in_command},
+                                                       {4, &Session::misplace},
                                                        {4, &Session::knock},
                                                        {4, &Session::disconnect},
                                                        {6, &Session::console},
@@ -362,8 +377,8 @@ constexpr auto kThemes =
                                    {"objectives", 4, 5'000'000, 80'000'000, kObjectives},
                                    {"framing", 6, 500'000, 10'000'000, kFraming},
                                    {"connections", 6, 1'000'000, 30'000'000, kConnections},
-                                   {"faults", 5, 2'000'000, 40'000'000, kFaults},
-                                   {"deaths", 3, 500'000, 20'000'000, kDeaths}});
+                                   {"faults", 4, 2'000'000, 40'000'000, kFaults},
+                                   {"deaths", 4, 500'000, 20'000'000, kDeaths}});
 
 }  // namespace
 

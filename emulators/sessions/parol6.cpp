@@ -111,12 +111,11 @@ class Session : public Draft {
   void home_on() {  // to the end if nothing comes between
     home();
     last_ = encode(dice_.one_in(6) ? CommandFrame{.command = Command::kHome} : idle_frame());
-    const auto end = now_ + dice_.mostly_low(100'000, 40'000'000);
-    const auto gap = dice_.between(10'000, 90'000);
-    while (now_ < end) {
-      put(last_);
-      wait(gap);
-    }
+    hold(dice_.mostly_low(100'000, 40'000'000));
+  }
+  void demo_on() {  // out, asleep and back, if nothing comes between
+    demo();
+    hold(dice_.between(1'000'000, 30'000'000));
   }
 
   // What is no frame.
@@ -238,6 +237,15 @@ class Session : public Draft {
   }
   void add_bytes(Bytes bytes) { add({R"("dir":"to_device","hex":"{}")", to_hex(bytes)}); }
 
+  /// The last frame again and again.
+  void hold(std::int64_t time) {
+    const auto end = now_ + time;
+    const auto gap = dice_.between(10'000, 90'000);
+    while (now_ < end) {
+      put(last_);
+      wait(gap);
+    }
+  }
   void pause() {
     switch (dice_.between(0, 7)) {
       case 0:  // nothing between
@@ -328,6 +336,7 @@ constexpr auto kHoming = std::to_array<Deed<Session>>({{10, &Session::home_on},
                                                        {2, &Session::input},
                                                        {3, &Session::rest}});
 constexpr auto kDemo = std::to_array<Deed<Session>>({{12, &Session::demo},
+                                                     {4, &Session::demo_on},
                                                      {6, &Session::again},
                                                      {4, &Session::approach},
                                                      {3, &Session::go_to},

@@ -23,9 +23,9 @@ inline std::ostream& operator<<(std::ostream& out, const DrawnDevice& device) {
 }
 
 inline constexpr std::array kDrawnDevices{
-    DrawnDevice{"parol6", parol6::sessions::draw, 0x4D087137CFFEF43BU},
+    DrawnDevice{"parol6", parol6::sessions::draw, 0xFC5781E6D7119390U},
     DrawnDevice{"morap", morap::sessions::draw, 0x87B41FCB10477912U},
-    DrawnDevice{"kinovazed", kinovazed::sessions::draw, 0x688A63A518AAC795U}};
+    DrawnDevice{"kinovazed", kinovazed::sessions::draw, 0x89AEF6F3D35BB976U}};
 
 [[nodiscard]] inline Outcome<std::string> recording_of(const DrawnDevice& device,
                                                        std::uint64_t seed) {
