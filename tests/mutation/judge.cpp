@@ -1,22 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells whether an emulator in a shared object is the one of this program, and whether the suite of
-// its device finds it out.
+// Programs with an emulator that comes in a shared object (tests/mutation/judged.hpp).
 //
-//   mutation_judge DEVICE OBJECT RECORDINGS SESSIONS TARGET
+//   mutation_judge judge DEVICE OBJECT TARGET FOLDER...
 //
-// Prints a line "differs: WHERE" or "same", then "killed: CASE" or "survived: N cases passed". The
-// second is left out where the first says "same".
+// tells whether a recording in those folders tells it from the emulator of this program, and
+// whether the suite of its device finds it out. Prints a line "differs: RECORDING" or "same", then
+// "killed: CASE" or "survived: N cases passed". The second is left out where the first says "same",
+// unless ARMJIG_JUDGE_ALL is set.
+//
+//   mutation_judge serve DEVICE OBJECT ARGUMENT...
+//
+// is the armjig program, with those arguments, that has this emulator instead of its own.
 #include <dlfcn.h>
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "cli/device.hpp"
 #include "cli/devices/devices.hpp"
+#include "cli/program.hpp"
 #include "conformance/run.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/rig/target.hpp"
@@ -25,97 +34,108 @@
 namespace armjig::mutation {
 namespace {
 
-bool differs(const Trace& trace, const cli::Device& device, const Judged& judged) {
-  auto replay = device.replay;
-  replay.run = judged.replay;
-  const auto difference = verify(trace, replay);
-  return !difference || difference->has_value();
+constexpr int kWrongUsage = 2;
+
+/// What the object gives. Entries of devices have plain functions, which cannot keep it.
+const Judged* judged = nullptr;
+
+template <class Hosted>
+Outcome<std::unique_ptr<Hosted>> emulate_judged(const DeviceOptions& options,
+                                                const std::string& where) {
+  return judged->emulate(options, where).map([](AnyHosted hosted) {
+    return std::get<std::unique_ptr<Hosted>>(std::move(hosted));
+  });
 }
 
-/// The recording or session that tells the two apart; empty if none does.
-std::string told_apart_by(const cli::Device& device, const Judged& judged,
-                          const std::string& recordings, std::uint64_t sessions) {
-  const auto files = find_traces({recordings});
-  for (const auto& path : files.value_or(std::vector<std::string>{})) {
+/// The device with the emulator of the object.
+cli::Device with_judged(cli::Device device) {
+  device.replay.run = judged->replay;
+  std::visit(
+      [](auto& kind) {
+        kind.emulate = emulate_judged<typename std::remove_cvref_t<decltype(kind)>::Hosted>;
+      },
+      device.port);
+  return device;
+}
+
+/// The recording that tells the two apart; empty if none does. Those that are soon replayed come
+/// first, and one that cannot be replayed does so, too.
+Outcome<std::string> told_apart_by(const cli::Device& device,
+                                   const std::vector<std::string>& folders) {
+  auto files = find_traces(folders);
+  if (!files) return tl::unexpected{files.error()};
+  std::ranges::sort(*files, {}, [](const auto& path) {
+    return std::pair{std::filesystem::file_size(path), path};
+  });
+  for (const auto& path : *files) {
     const auto trace = read_trace(path);
-    if (trace && differs(*trace, device, judged)) return path.substr(recordings.size() + 1);
+    if (!trace) return tl::unexpected{trace.error()};
+    const auto difference = verify(*trace, device.replay);
+    if (!difference || difference->has_value()) return path;
   }
-  for (std::uint64_t seed = 1; seed <= sessions; ++seed) {
-    const auto recording =
-        parse_trace("", device.draw_session(seed)).and_then([&](const Trace& stimulus) {
-          return record(stimulus, device.replay);
-        });
-    const auto trace = parse_trace("", recording.value_or(""));
-    if (trace && differs(*trace, device, judged)) return fmt::format("session {}", seed);
-  }
-  return "";
+  return std::string{};
 }
 
 /// What the suite says: the first case that fails, or how many passed.
-Outcome<std::string> judgement(const cli::Device& device, const Judged& judged,
-                               std::string_view text) {
-  return std::visit(
-      [&](const auto& kind) -> Outcome<std::string> {
-        using Kind = std::remove_cvref_t<decltype(kind)>;
-        using Hosted = std::unique_ptr<typename Kind::Hosted>;
-        auto judged_kind = kind;
-        auto wiring = cli::wiring_of(device, judged_kind);
-        wiring.open_emulated = [&](const Target& target) {
-          return judged.emulate(target.options, target.text).map([](AnyHosted hosted) {
-            return open_in_memory(std::get<Hosted>(std::move(hosted)));
-          });
-        };
-        auto target = parse_target(text);
-        if (!target) return tl::unexpected{target.error()};
-        const RigOptions how{.target = *std::move(target)};
-        auto rig = Rig<typename Kind::Port>::open(wiring, how);
-        if (!rig) return tl::unexpected{rig.error()};
-        auto bench = kind.make_bench(*std::move(rig), how);
-        if (!bench) return tl::unexpected{bench.error()};
-        RunOptions run;
-        run.stops_at_first_failure = true;
-        run.permissions = Permissions::all();
-        const auto report = run_suite(device.suite(), **bench, run, [](const ReportRow&) {});
-        for (const auto& row : report.rows) {
-          if (row.verdict == Verdict::kFail || row.verdict == Verdict::kError) {
-            return "killed: " + row.name;
-          }
-        }
-        const auto passed = std::ranges::count(report.rows, Verdict::kPass, &ReportRow::verdict);
-        return fmt::format("survived: {} cases passed", passed);
-      },
-      device.port);
+Outcome<std::string> judgement(const cli::Device& device, std::string_view text) {
+  auto target = parse_target(text);
+  if (!target) return tl::unexpected{target.error()};
+  const auto bench = cli::open_bench(device, {.target = *std::move(target)});
+  if (!bench) return "killed: the start, " + describe(bench.error());
+  RunOptions run;
+  run.stops_at_first_failure = true;
+  run.permissions = Permissions::all();
+  const auto report = run_suite(device.suite(), **bench, run, [](const ReportRow&) {});
+  for (const auto& row : report.rows) {
+    if (row.verdict == Verdict::kFail || row.verdict == Verdict::kError) {
+      return "killed: " + row.name;
+    }
+  }
+  return fmt::format("survived: {} cases passed",
+                     std::ranges::count(report.rows, Verdict::kPass, &ReportRow::verdict));
 }
 
-int judge(std::span<char*> arguments) {
-  const auto devices = cli::shipped_devices();
-  const auto device = cli::find_device(devices, arguments[1]);
-  if (!device) return 2;
-  void* const object = dlopen(arguments[2], RTLD_NOW | RTLD_LOCAL);
+Outcome<void> judge(const cli::Device& device, const std::string& target,
+                    const std::vector<std::string>& folders) {
+  const auto where = told_apart_by(device, folders);
+  if (!where) return tl::unexpected{where.error()};
+  fmt::print("{}\n", where->empty() ? "same" : "differs: " + *where);
+  std::fflush(stdout);
+  if (where->empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr) return {};
+  return judgement(device, target).map([](const std::string& found) { fmt::print("{}\n", found); });
+}
+
+int serve(const cli::Device& device, char* program, std::span<char*> arguments) {
+  std::vector<char*> words{program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  const std::vector<cli::Device> devices{device};
+  return cli::run_program(static_cast<int>(words.size()), words.data(), devices);
+}
+
+int run(std::span<char*> arguments) {
+  if (arguments.size() < 5) return kWrongUsage;
+  const auto found = cli::find_device(cli::shipped_devices(), arguments[2]);
+  if (!found) return kWrongUsage;
+  void* const object = dlopen(arguments[3], RTLD_NOW | RTLD_LOCAL);
   if (object == nullptr) {
     fmt::print(stderr, "{}\n", dlerror());
-    return 2;
+    return kWrongUsage;
   }
-  const auto entry = reinterpret_cast<const Judged* (*)()>(dlsym(object, kEntry));
-  const auto& judged = *entry();
-  const auto where =
-      told_apart_by(**device, judged, arguments[3], std::strtoull(arguments[4], nullptr, 10));
-  fmt::print("{}\n", where.empty() ? "same" : "differs: " + where);
-  std::fflush(stdout);
-  if (where.empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr) return 0;
-  const auto found = judgement(**device, judged, arguments[5]);
-  if (!found) {
-    fmt::print(stderr, "{}\n", describe(found.error()));
-    return 2;
+  judged = reinterpret_cast<const Judged* (*)()>(dlsym(object, kEntry))();
+  const auto device = with_judged(**found);
+  if (std::string_view{arguments[1]} == "serve") {
+    return serve(device, arguments[0], arguments.subspan(4));
   }
-  fmt::print("{}\n", *found);
-  return 0;
+  const auto folders = arguments.subspan(5);
+  const auto done = judge(device, arguments[4], {folders.begin(), folders.end()});
+  if (done) return 0;
+  fmt::print(stderr, "{}\n", describe(done.error()));
+  return kWrongUsage;
 }
 
 }  // namespace
 }  // namespace armjig::mutation
 
 int main(int argc, char** argv) {
-  if (argc != 6) return 2;
-  return armjig::mutation::judge({argv, static_cast<std::size_t>(argc)});
+  return armjig::mutation::run({argv, static_cast<std::size_t>(argc)});
 }
