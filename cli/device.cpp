@@ -108,6 +108,7 @@ Outcome<ProbedLink> open_probe(const Device& device, const RigOptions& how) {
 
 Outcome<std::unique_ptr<Follower>> open_follower(const Device& device, const RigOptions& how) {
   using Opened = Outcome<std::unique_ptr<Follower>>;
+  if (!how.target.is_emulated()) return bad_target(how.target.text, "only emulated joints are led");
   return with_rig(device, how, [&device](const auto& kind, auto rig) -> Opened {
     if (kind.make_follower != nullptr) return kind.make_follower(std::move(rig));
     return problem(ErrorCode::kUnsupported, std::string{device.name},

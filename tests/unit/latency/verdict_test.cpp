@@ -126,7 +126,8 @@ TEST(LatencyJson, IsValidAgainstItsSchema) {
   const std::vector<Slice> slices(12, Slice{1ms, 1ms});
   run.comparison = compare_alternated(slices, slices, 1);
   EXPECT_TRUE(test::is_valid_json(to_latency_json(run), "docs/schemas/latency.schema.json"));
-  EXPECT_TRUE(test::is_valid_json(to_latency_json(LatencyRun{}), "docs/schemas/latency.schema.json"));
+  EXPECT_TRUE(
+      test::is_valid_json(to_latency_json(LatencyRun{}), "docs/schemas/latency.schema.json"));
   run.started = std::chrono::sys_seconds{};
   run.witness.emplace();
   run.privileges = {{"memory", true, "locked"}};

@@ -121,6 +121,7 @@ const std::vector<Step>& steps() {
         {"harness/console/generic.cpp", "the port of the rig that it was given"},
         {"harness/rig/stream_link.cpp", "the bus of the rig that it was given"},
         {"harness/latency/path.cpp", "the port of the rig that it was given"},
+        {"harness/latency/parol6_follower.cpp", "the port of a rig that is emulated"},
         {"harness/console/watched.cpp", "the port of the rig that it was given"},
         {"conformance/stream_bench.cpp", "the port of the rig that `armjig conformance` opened"},
         {"conformance/bus_bench.cpp", "the bus of the rig that `armjig conformance` opened"},
