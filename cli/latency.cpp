@@ -570,8 +570,9 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
                                    "measure nothing: what a recording or a log of --hlog shows");
   from->type_name("FILE");
   for (const auto* const other :
-       {"--target", "--allow", "--impair", "--wire-log", "--against", "--rate", "--closed-loop",
-        "--burst", "--sweep", "--count", "--seconds", "--load", "--priority", "--processor"}) {
+       {"--target", "--allow", "--impair", "--capture", "--rotate", "--redact", "--against",
+        "--rate", "--closed-loop", "--burst", "--sweep", "--count", "--seconds", "--load",
+        "--priority", "--processor"}) {
     from->excludes(command->get_option(other));
   }
   command->callback([options, devices, &action] {

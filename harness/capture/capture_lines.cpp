@@ -215,10 +215,7 @@ class LineCaptureWriter final : public CaptureWriter {
 }  // namespace
 
 Outcome<std::unique_ptr<CaptureReader>> open_lines(UserFile file, const std::string& path) {
-  auto reader = std::make_unique<LineCaptureReader>(std::move(file), path);
-  auto begun = reader->read_header();
-  if (!begun) return tl::unexpected{std::move(begun.error())};
-  return reader;
+  return begin_reading<LineCaptureReader>(std::move(file), path);
 }
 
 std::unique_ptr<CaptureWriter> make_line_writer() { return std::make_unique<LineCaptureWriter>(); }

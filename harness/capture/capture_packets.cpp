@@ -411,10 +411,7 @@ class PacketCaptureReader final : public CaptureReader {
 }  // namespace
 
 Outcome<std::unique_ptr<CaptureReader>> open_packets(UserFile file, const std::string& path) {
-  auto reader = std::make_unique<PacketCaptureReader>(std::move(file), path);
-  auto begun = reader->read_header();
-  if (!begun) return tl::unexpected{std::move(begun.error())};
-  return reader;
+  return begin_reading<PacketCaptureReader>(std::move(file), path);
 }
 
 std::unique_ptr<CaptureWriter> make_packet_writer() {

@@ -36,6 +36,12 @@ Duration wall_clock() noexcept {
   return duration_of(now);
 }
 
+Result<Path::Arrival> read_from(StreamPort& port, std::span<std::byte> into, Instant deadline) {
+  return port.read(into, deadline).map([&](std::size_t size) {
+    return Path::Arrival{size, port.now()};
+  });
+}
+
 class PortPath final : public Path {
  public:
   explicit PortPath(StreamPort& port) : port_{port} {}
@@ -44,9 +50,7 @@ class PortPath final : public Path {
   Result<Arrival> drain(std::span<std::byte> into) override { return receive(into, port_.now()); }
   Result<void> send(Bytes message) override { return port_.write(message); }
   Result<Arrival> receive(std::span<std::byte> into, Instant deadline) override {
-    const auto size = port_.read(into, deadline);
-    if (!size) return tl::unexpected{size.error()};
-    return Arrival{*size, port_.now()};
+    return read_from(port_, into, deadline);
   }
   std::string_view name() const noexcept override { return "the port with its layers"; }
 
@@ -72,9 +76,7 @@ class FilePath final : public Path {
     return admitted;
   }
   Result<Arrival> drain(std::span<std::byte> into) override {
-    const auto size = port_.read(into, port_.now());
-    if (!size) return tl::unexpected{size.error()};
-    return Arrival{*size, port_.now()};
+    return read_from(port_, into, port_.now());
   }
   void overhear(Bytes bytes) override { line_.guard->overhear(bytes); }
   std::string_view name() const noexcept override {

@@ -147,23 +147,22 @@ bool OutputFile::is_same_place(const OutputFile& other) const noexcept {
          there_.st_ino == other.there_.st_ino && name_ == other.name_;
 }
 
-Outcome<void> OutputFile::put(std::string_view content) {
+template <class Work>
+Outcome<void> OutputFile::unless_failed(Work work) {
   if (!failure_) {
-    const bool is_in_place = kind_ == Kind::kGrowing || !is_regular_;
-    const int error = is_in_place ? append(content) : write_whole(content);
-    if (error != 0) failure_ = problem_of_writing(path_, error);
+    if (const int error = work(); error != 0) failure_ = problem_of_writing(path_, error);
   }
   if (failure_) return tl::unexpected{*failure_};
   return {};
 }
 
+Outcome<void> OutputFile::put(std::string_view content) {
+  const bool is_in_place = kind_ == Kind::kGrowing || !is_regular_;
+  return unless_failed([&] { return is_in_place ? append(content) : write_whole(content); });
+}
+
 Outcome<void> OutputFile::rotate(int files) {
-  if (!failure_) {
-    if (const int error = move_aside(files); error != 0)
-      failure_ = problem_of_writing(path_, error);
-  }
-  if (failure_) return tl::unexpected{*failure_};
-  return {};
+  return unless_failed([&] { return move_aside(files); });
 }
 
 int OutputFile::move_aside(int files) {

@@ -60,6 +60,9 @@ class OutputFile {
   [[nodiscard]] int write_whole(std::string_view content);
   [[nodiscard]] int append(std::string_view content);
   [[nodiscard]] int move_aside(int files);
+  /// Does what answers an errno, unless that has failed before.
+  template <class Work>
+  Outcome<void> unless_failed(Work work);
 
   std::string path_;    ///< as it was said
   std::string target_;  ///< after all links
