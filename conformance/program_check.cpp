@@ -100,9 +100,8 @@ Report ProgramCheck::finish() {
                   {"device time", fmt::format("{:.3f} s", seconds(now_))}};
   if (const auto overlooked = seconds(at(checker_->overlooked())); overlooked > 0) {
     report.facts.emplace_back(
-        "overlooked",
-        fmt::format("{:.3f} s ({:.1f} %): armjig was late itself then", overlooked,
-                    100 * overlooked / std::max(seconds(now_), overlooked)));
+        "overlooked", fmt::format("{:.3f} s ({:.1f} %): armjig was late itself then", overlooked,
+                                  100 * overlooked / std::max(seconds(now_), overlooked)));
   }
   for (const auto& requirement : entry_.requirements()) {
     report.rows.push_back(row_of(requirement));

@@ -108,9 +108,8 @@ TEST(ProgramCheck, SaysWhatItCouldNotJudgeBecauseItsHostWasLate) {
   const auto report = check.finish();
   EXPECT_EQ(report.count(Verdict::kFail), 0U);
   EXPECT_EQ(row_of(report, "parol6.host.gap-in-motion").verdict, Verdict::kInconclusive);
-  EXPECT_THAT(report.facts,
-              testing::Contains(std::pair<std::string, std::string>{
-                  "overlooked", "0.600 s (20.0 %): armjig was late itself then"}));
+  EXPECT_THAT(report.facts, testing::Contains(std::pair<std::string, std::string>{
+                                "overlooked", "0.600 s (20.0 %): armjig was late itself then"}));
 }
 
 TEST(ProgramCheck, HearsTheMessagesOfABusWhenTheyAreOver) {
