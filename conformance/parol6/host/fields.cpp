@@ -100,10 +100,12 @@ void GripperConduct::judge(const CommandFrame& frame, const std::optional<Grippe
         "parol6.host.gripper-forgotten",
         fmt::format("position {} came with a calibration or clear-error only", set_point.position));
   }
+  const bool is_new = !before_ || without_mode(*before_) != set_point;
   if (!is_one_shot) {
     judge_move(wanted, report, complain);
     forgotten_.reset();
-  } else if (before_ && without_mode(*before_) != set_point) {
+    if (is_new) sent_ = set_point;
+  } else if (before_ && is_new && sent_ != set_point) {
     forgotten_ = set_point;
   }
   before_ = wanted;

@@ -24,6 +24,7 @@ class GripperConduct {
                   const Complain& complain) const;
 
   std::optional<GripperSetPoint> before_;
+  std::optional<GripperSetPoint> sent_;       ///< what the gripper got last
   std::optional<GripperSetPoint> forgotten_;  ///< changed in a frame that did not send it
 };
 

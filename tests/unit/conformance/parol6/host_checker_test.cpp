@@ -586,6 +586,15 @@ TEST(HostChecker, LetsAnArmComeBackFromOutsideItsRange) {
   EXPECT_THAT(program.broken(), testing::IsEmpty());
 }
 
+TEST(HostChecker, MissesNoSetPointThatTheGripperGotBefore) {
+  Program program{calibrated_arm()};
+  program.hold(idle(), 50ms);
+  for (const auto& set_point : {grip(20), grip(30, 1), grip(20, 2), grip(20)}) {
+    program.cycle(idle_with([&](CommandFrame& frame) { frame.gripper = set_point; }));
+  }
+  EXPECT_THAT(program.broken(), testing::IsEmpty());
+}
+
 TEST(HostChecker, NamesTheLimitOfAJog) {
   const auto checker = program_check().make({});
   checker->from_device(at(0ms), encode(TelemetryFrame{.homed = 0xFF, .io = 0xFF}));
