@@ -70,7 +70,8 @@ Outcome<CaptureFile> open_capture_file(std::string_view option, const CaptureOpt
     }
     return capture;
   }
-  const auto format = capture_format_of(options.file);
+  const auto format =
+      options.format ? Outcome<CaptureFormat>{*options.format} : capture_format_of(options.file);
   if (!format) return tl::unexpected{format.error()};
   capture.format = *format;
   capture.is_redacted = options.is_redacted;

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -18,6 +19,7 @@ struct CaptureOptions {
   std::string file;
   std::string rotate;
   bool is_redacted = false;
+  std::optional<CaptureFormat> format{};  ///< none: by the ending of the file
 };
 
 /// Adds `--rotate`, `--redact`, and before them the file, which it answers.

@@ -45,8 +45,10 @@ void add_kin(CLI::App& app, Devices devices, Action& action);
 void add_lab(CLI::App& app, Devices devices, Action& action);
 void add_latency(CLI::App& app, Devices devices, Action& action);
 void add_record(CLI::App& app, Devices devices, Action& action);
+void add_replay(CLI::App& app, Devices devices, Action& action);
 void add_trace(CLI::App& app, Devices devices, Action& action);
 void add_watch(CLI::App& app, Devices devices, Action& action);
+void add_wireshark(CLI::App& app, Devices devices, Action& action);
 
 /// Prints the problem as one line on standard error and answers the exit code that goes with it.
 [[nodiscard]] Exit report(const Problem& problem);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
+#include <sys/timex.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 
@@ -15,7 +19,10 @@
 #include "cli/choice.hpp"
 #include "cli/conformance_mutants.hpp"
 #include "cli/device.hpp"
+#include "cli/hand_options.hpp"
 #include "cli/missed_time.hpp"
+#include "cli/progress.hpp"
+#include "cli/reference.hpp"
 #include "cli/report_files.hpp"
 #include "cli/signals.hpp"
 #include "cli/target_options.hpp"
@@ -46,6 +53,9 @@ constexpr auto kHelp =
 struct Options {
   std::string device;
   TargetOptions target;
+  HandOptions hands;
+  double required_percent = 100 * RunOptions{}.required_share;
+  std::optional<double> most_seconds;
   std::string profile = "firmware";
   std::string tier = "full";
   std::string shard = "1/1";
@@ -113,6 +123,9 @@ Exit explain(const Suite& suite, const std::string& name) {
   if (!requirement->instead.empty()) {
     fmt::print("  the other profile instead: {}\n", requirement->instead);
   }
+  if (!requirement->unobservable.empty()) {
+    fmt::print("  no case: {}\n", requirement->unobservable);
+  }
   for (const auto& chapter : suite.chapters) {
     for (const auto& one : chapter.cases) {
       if (one.requirement != requirement->id) continue;
@@ -134,6 +147,7 @@ Outcome<void> complete(const Suite& suite, Options& options) {
   const auto shard = parse_shard(options.shard);
   if (!shard) return tl::unexpected{shard.error()};
   options.run.selection.shard = *shard;
+  options.run.required_share = options.required_percent / 100;
   if (options.waivers.empty()) return {};
   auto waivers = read_waivers(options.waivers, suite, today());
   if (!waivers) return tl::unexpected{waivers.error()};
@@ -143,8 +157,9 @@ Outcome<void> complete(const Suite& suite, Options& options) {
 
 /// The command line that does this again, but for the filter.
 std::string command_of(const Options& options) {
-  auto text = fmt::format("armjig conformance {} --target '{}'{}", options.device,
-                          options.target.target, to_arguments(options.target));
+  auto text =
+      fmt::format("armjig conformance {} --target '{}'{}", options.device, options.target.target,
+                  to_arguments(options.target) + to_arguments(options.hands));
   if (options.run.profile != Profile::kFirmware)
     text += fmt::format(" --profile {}", options.profile);
   if (options.run.seed != RunOptions{}.seed) text += fmt::format(" --seed {}", options.run.seed);
@@ -169,6 +184,24 @@ void print_skipped(const Report& result) {
   fmt::print("skipped: {}\n", text.substr(2));
 }
 
+/// What of this machine bears on moments: how busy it was, and what its clock is kept by.
+void add_machine(Report& result) {
+  std::array<double, 1> load{};
+  if (::getloadavg(load.data(), 1) == 1) {
+    result.facts.emplace_back("host load",
+                              fmt::format("{:.2f} in the last minute, on {} processors", load[0],
+                                          std::thread::hardware_concurrency()));
+  }
+  timex clock{};
+  if (::adjtimex(&clock) < 0) return;
+  constexpr double kPartsOfFrequency = 65536;
+  const bool is_kept = (clock.status & STA_UNSYNC) == 0;
+  result.facts.emplace_back("host clock",
+                            fmt::format("corrected by {:+.1f} ppm, {} by a time server",
+                                        static_cast<double>(clock.freq) / kPartsOfFrequency,
+                                        is_kept ? "kept" : "not kept"));
+}
+
 Exit run(const Device& device, const Suite& suite, Options options) {
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
@@ -180,35 +213,51 @@ Exit run(const Device& device, const Suite& suite, Options options) {
   if (!files) return report(files.error());
   const Signals signals;
   bool is_running = true;
+  const auto begun = std::chrono::steady_clock::now();
+  options.run.is_time_up = [begun, most = options.most_seconds] {
+    return most && std::chrono::steady_clock::now() - begun >= duration_of(*most);
+  };
   const MustStop must_stop = [&] {
     const bool is_in_vain = files->is_empty() && is_standard_output_lost();
-    return is_running && (signals.has_come() || is_in_vain);
+    return is_running && (signals.has_come() || is_in_vain || options.run.is_time_up());
   };
   how->must_stop = must_stop;
   how->when_left = WhenLeft::kSayNothing;  // cases look at what an arm does without its client
   options.run.must_stop = must_stop;
   auto bench = open_bench(device, *how);
   if (!bench) return report(bench.error());
+  (*bench)->set_hand(hand_of(options.hands));
   options.run.permissions = how->target.is_emulated() ? Permissions::all() : how->permissions;
   options.run.target = how->target.text;
   options.run.command = command_of(options);
+  const bool is_real = !how->target.is_emulated();
+  if (is_real || how->impairment) {
+    options.run.reference = reference_of(device, *how, options.profile);
+  }
   std::optional<MissedTime> missed;
-  if (!how->target.is_emulated()) {  // virtual time stands still when we do
+  if (is_real) {  // virtual time stands still when we do
     missed.emplace();
     options.run.missed = [&missed] { return missed->total(); };
   }
   const auto started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   const auto style = style_of(options.colour, stdout);
-  auto result = run_suite(suite, **bench, options.run, [style](const ReportRow& row) {
+  const Progress progress;
+  options.run.on_wait = [&progress](std::string_view what) { progress.say(what); };
+  auto result = run_suite(suite, **bench, options.run, [&](const ReportRow& row) {
+    progress.clear();
     fmt::print("{}", line_of(row, style));
     std::fflush(stdout);
   });
+  progress.clear();
   is_running = false;
   bench->reset();  // an arm that moves stands before anything else is done
   result.started = started;
+  if (is_real) add_machine(result);
+  if (options.run.is_time_up()) result.facts.emplace_back("time", "up before every case was run");
   if (signals.has_come()) result.facts.emplace_back("interrupted", "not every case was run");
   if (how->impairment) result.facts.emplace_back("impairment", to_string(*how->impairment));
   fmt::print("{}\n", counts_line(result, style));
+  if (result.coverage) fmt::print("judged {}\n", to_text(*result.coverage));
   print_skipped(result);
   fmt::print("{}", failures_text(result, style));
   files->put(result);
@@ -268,6 +317,7 @@ void add_conformance(CLI::App& app, Devices devices, Action& action) {
   const auto options = std::make_shared<Options>();
   command->add_option("DEVICE", options->device, "which one: " + names_of(devices))->type_name("");
   add_target_options(*command, options->target);
+  add_hand_options(*command, options->hands);
   command
       ->add_option("--profile", options->profile,
                    "whose expectations, and which device behind emulated:")
@@ -282,6 +332,22 @@ void add_conformance(CLI::App& app, Devices devices, Action& action) {
   command->add_option("--shard", options->shard, "only one part of several, as in 2/4");
   command->add_flag("--fail-fast", options->run.stops_at_first_failure,
                     "run nothing more once a case has failed");
+  command
+      ->add_option("--require", options->required_percent,
+                   "how many percent of the must requirements within reach have to be judged; "
+                   "less is a failure (default: 95)")
+      ->type_name("SHARE")
+      ->transform(CLI::Validator{[](std::string& text) {
+                                   if (text.ends_with('%')) text.pop_back();
+                                   return std::string{};
+                                 },
+                                 ""})
+      ->check(number(0, 100));
+  command
+      ->add_option("--max-time", options->most_seconds,
+                   "run no longer than that; what is left is skipped")
+      ->type_name("SECONDS")
+      ->check(number(0.001, 1e9));
   command->add_option("--waivers", options->waivers, "a file that excuses requirements")
       ->type_name("FILE");
   command->add_option("--explain", options->explain, "say what a requirement demands, and why");

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cstdio>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -17,14 +20,15 @@
 #include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "cli/device.hpp"
+#include "cli/foreign_options.hpp"
+#include "cli/signals.hpp"
 #include "harness/capture/capture.hpp"
 #include "harness/capture/message_json.hpp"
-#include "harness/capture/pcapng.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/files/user_file.hpp"
-#include "harness/report/wording.hpp"
-#include "harness/wire/brief.hpp"
+#include "harness/foreign/foreign.hpp"
+#include "harness/wire/append_text.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig::cli {
@@ -41,10 +45,13 @@ constexpr auto kHelp =
     "  armjig decode DEVICE --file session.pcapng --csv    a table, for spreadsheets and "
     "PlotJuggler\n"
     "  armjig decode DEVICE --file session.pcapng --field NAME=VALUE --from 1.5 --to 2\n"
+    "  armjig decode DEVICE --interface lo                 what passes there from now on, until "
+    "Ctrl-C\n"
     "\n"
     "What passed on a bus begins with the address, shifted left, as in 24 01 00 00 80 3F.\n"
     "\n"
-    "A file may hold raw bytes, hexadecimal digits or a recording; which of them is\n"
+    "A file may hold raw bytes, hexadecimal digits or a recording, of other programs, too; which "
+    "of them is\n"
     "seen from its content unless --format says it. Bytes that are no message are shown as noise\n"
     "with the reason.";
 
@@ -69,6 +76,8 @@ struct Options {
   double to = std::numeric_limits<double>::max();
   std::optional<std::uint32_t> connection;
   std::optional<std::uint32_t> address;
+  std::string interface;
+  ForeignOptions foreign;
 };
 
 /// A message, and where it passed.
@@ -124,9 +133,9 @@ bool is_wanted(const CaptureRecord& record, const Options& options) {
 }
 
 /// Message by message, in memory that does not grow with the file.
-Outcome<void> decode_recording(UserFile file, const Options& options, Devices devices,
-                               const Device& device, const Use& use) {
-  const auto reader = CaptureReader::open(std::move(file), options.file);
+Outcome<void> decode_recording(Outcome<std::unique_ptr<CaptureReader>> reader,
+                               const Options& options, Devices devices, const Device& device,
+                               const Use& use) {
   if (!reader) return tl::unexpected{reader.error()};
   std::map<std::pair<const CaptureLink*, std::uint32_t>, std::unique_ptr<Dissector>> talks;
   std::vector<Message> messages;
@@ -149,7 +158,8 @@ Outcome<void> decode_recording(UserFile file, const Options& options, Devices de
       continue;
     }
     auto& dissector = talks[{record.link, is_bus ? 0 : record.id}];
-    if (!dissector) dissector = device.make_dissector();
+    if (dissector && lost_before(record) > 0) dissector->finish(messages);
+    if (!dissector || lost_before(record) > 0) dissector = device.make_dissector();
     dissector->feed(record.direction, record.time, is_bus ? Bytes{bus_message} : record.bytes,
                     messages);
     tell();
@@ -160,9 +170,7 @@ Outcome<void> decode_recording(UserFile file, const Options& options, Devices de
     fmt::print(stderr, "armjig decode: {} transactions without an answer are left out\n",
                unanswered);
   }
-  if (const auto warning = (*reader)->warning(); !warning.empty() && !options.is_quiet) {
-    fmt::print(stderr, "armjig: {}\n", wording::line(warning));
-  }
+  if (!options.is_quiet) print_warning_of(**reader);
   if (!has_record) return tl::unexpected{has_record.error()};
   return {};
 }
@@ -182,6 +190,13 @@ Outcome<void> decode_all(const Options& options, Devices devices, const Device& 
   const auto decode = [&](const std::vector<std::byte>& bytes) {
     decode_bytes(bytes, options, device, use);
   };
+  const auto how = foreign_how(devices, options.foreign, device.name);
+  if (!how) return tl::unexpected{how.error()};
+  if (!options.interface.empty()) {
+    const Signals signals;
+    auto reader = open_interface(options.interface, *how, [&] { return signals.has_come(); });
+    return decode_recording(std::move(reader), options, devices, device, use);
+  }
   if (options.file.empty()) {
     std::string text;
     for (const auto& word : options.hex) text += word + ' ';
@@ -189,10 +204,9 @@ Outcome<void> decode_all(const Options& options, Devices devices, const Device& 
   }
   auto file = options.file == "-" ? UserFile::standard_input() : UserFile::open(options.file);
   if (!file) return tl::unexpected{file.error()};
-  const bool is_trace =
-      options.format == "auto" && (file->peek() == '{' || file->starts_with(pcapng::kMagic));
-  if (is_trace || options.format == "trace") {
-    return decode_recording(*std::move(file), options, devices, device, use);
+  if (options.format == "trace" || (options.format == "auto" && is_capture(*file))) {
+    auto reader = open_foreign(*std::move(file), options.file, *how);
+    return decode_recording(std::move(reader), options, devices, device, use);
   }
   const auto content = file->rest(kMostBytes);
   if (!content) return tl::unexpected{content.error()};
@@ -308,18 +322,52 @@ class Table {
   std::vector<std::string> cells_;
 };
 
-void print(const Decoded& decoded, const Options& options) {
-  const auto& message = decoded.message;
-  if (options.json) return fmt::print("{}\n", to_json(message));
-  if (decoded.has_time) {
-    fmt::print("{:>12.3f} ms ", milliseconds(message.time.time_since_epoch()));
+/// Messages as lines. They are collected: a file may have millions of them.
+class Lines {
+ public:
+  explicit Lines(const Options& options) : options_{options} {}
+  Lines(const Lines&) = delete;
+  Lines& operator=(const Lines&) = delete;
+  ~Lines() { flush(); }
+
+  void print(const Decoded& decoded) {
+    const auto& message = decoded.message;
+    if (options_.json) {
+      append_json(text_, message);
+    } else {
+      if (decoded.has_time) {
+        fmt::format_to(std::back_inserter(text_), "{:>12.3f} ms ",
+                       milliseconds(message.time.time_since_epoch()));
+      }
+      options_.is_verbose ? void(text_ += to_text(message)) : append_line(text_, message);
+    }
+    text_ += '\n';
+    if (text_.size() >= enough_) flush();
   }
-  fmt::print("{}\n", options.is_verbose ? to_text(message) : to_line(message));
-}
+
+ private:
+  static constexpr std::size_t kMuch = std::size_t{64} << 10U;
+
+  void flush() {
+    std::fwrite(text_.data(), 1, text_.size(), stdout);
+    text_.clear();
+  }
+
+  [[nodiscard]] bool is_watched() const {
+    return !options_.interface.empty() || ::isatty(STDOUT_FILENO) != 0;
+  }
+
+  const Options& options_;
+  std::size_t enough_ = is_watched() ? 1 : kMuch;
+  std::string text_;
+};
 
 Exit decode(Devices devices, const Options& options) {
-  if (options.hex.empty() == options.file.empty()) {
-    fmt::print(stderr, "armjig decode: give hexadecimal digits or --file, one of them\n");
+  const auto inputs = (options.hex.empty() ? 0 : 1) + (options.file.empty() ? 0 : 1) +
+                      (options.interface.empty() ? 0 : 1);
+  if (inputs != 1) {
+    fmt::print(stderr,
+               "armjig decode: give hexadecimal digits, --file or --interface, one of them\n");
     return Exit::kUsage;
   }
   const auto device = find_device(devices, options.device);
@@ -329,7 +377,7 @@ Exit decode(Devices devices, const Options& options) {
   if (options.to < options.from) {
     return report({ErrorCode::kBadValue, "--to", "it is before --from"});
   }
-  if (options.csv && options.file == "-") {
+  if (options.csv && (options.file == "-" || !options.interface.empty())) {
     return report({ErrorCode::kBadValue, "--csv",
                    "the columns are known when all is read, so it is read twice: name a file"});
   }
@@ -347,14 +395,16 @@ Exit decode(Devices devices, const Options& options) {
   }
   bool is_empty = true;
   bool all_are_messages = true;
+  Lines lines{options};
   const auto decoded = decode_wanted(options, [&](const Decoded& one) {
     is_empty = false;
     all_are_messages = all_are_messages && one.message.fault.empty();
-    options.csv ? table.print(one) : print(one, options);
+    options.csv ? table.print(one) : lines.print(one);
+    if (!options.interface.empty()) (void)std::fflush(stdout);
   });
   if (!decoded) {
-    (void)report(decoded.error());
-    return Exit::kUsage;
+    const auto exit = report(decoded.error());
+    return options.interface.empty() ? Exit::kUsage : exit;
   }
   if (is_empty) {
     fmt::print(stderr, "armjig decode: there are no bytes to decode{}\n",
@@ -372,6 +422,11 @@ void add_decode(CLI::App& app, Devices devices, Action& action) {
   add_device_argument(*command, options->device, devices);
   command->add_option("HEX", options->hex, "hexadecimal digits, in any number of words");
   command->add_option("--file", options->file, "read this file, '-' for standard input");
+  command
+      ->add_option("--interface", options->interface,
+                   "what passes on a network interface or usbmonN of this machine, until Ctrl-C")
+      ->type_name("NAME");
+  add_foreign_options(*command, options->foreign);
   command->add_option("--format", options->format, "what the file holds")
       ->check(one_of({"auto", "raw", "hex", "trace"}))
       ->capture_default_str();

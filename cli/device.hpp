@@ -32,6 +32,7 @@
 #include "harness/rig/rig.hpp"
 #include "harness/rig/stream_link.hpp"
 #include "harness/rig/wiring.hpp"
+#include "harness/wire/dissection.hpp"
 
 namespace armjig::cli {
 
@@ -88,6 +89,7 @@ struct Device {
   std::optional<ProgramCheckEntry> program_check{};  ///< none: nothing is demanded of programs
   Replay replay{};                                   ///< how recordings drive it
   DrawSession draw_session{};                        ///< none: nothing is drawn at random
+  Dissection (*dissection)(){};                      ///< none: Wireshark is told nothing
   double watch_rate = 10;  ///< questions, or looks, a second unless the user wants another one
   std::vector<AddOwnCommand> commands{};
 };

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -53,7 +54,9 @@ Exit doctor(Devices devices, const Options& options) {
     fmt::print("{}", udev_rules(boards));
     return Exit::kPassed;
   }
-  const auto findings = examine(this_system(), boards);
+  auto system = this_system();
+  if (const auto* const home = std::getenv("HOME")) system.home = home;
+  const auto findings = examine(system, boards);
   options.wants_json ? print_json(findings) : print_text(findings);
   const bool is_well = std::ranges::none_of(
       findings, [](const Finding& finding) { return finding.state == Finding::State::kProblem; });

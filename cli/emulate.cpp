@@ -22,6 +22,7 @@ constexpr auto kHelp =
     "                                               pseudo-terminal, its TCP port, an I2C bus\n"
     "  armjig emulate DEVICE --link /tmp/arm        the same, under a name that stays\n"
     "  armjig emulate DEVICE --tcp 4000             as a byte stream on TCP, this machine only\n"
+    "  armjig emulate DEVICE --rfc2217 4001         as a serial port over Telnet (RFC 2217)\n"
     "  armjig emulate DEVICE --tcp 0 --pty --json   both, any free port, for scripts\n"
     "  armjig emulate DEVICE --set fault=NAME       a faulty one; 'conformance mutants' has names\n"
     "  armjig emulate DEVICE --check                tells what the client program does wrong\n"
@@ -31,7 +32,8 @@ constexpr auto kHelp =
     "them.\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
-    "--target takes. Clients may come and go. Ctrl-C (or SIGTERM) ends it, with exit code 0:\n"
+    "--target takes (but rfc2217:, which is for other programs). Clients may come and go. Ctrl-C "
+    "(or SIGTERM) ends it, with exit code 0:\n"
     "that is how a server ends. With --check what the program does wrong is said at once on\n"
     "standard error, and at the end as a report on standard output; findings exit with 1.";
 
@@ -42,6 +44,8 @@ struct Options {
   PtyOptions pty;
   bool wants_tcp = false;
   TcpOptions tcp;
+  bool wants_rfc2217 = false;
+  std::uint16_t rfc2217_port = 0;
   int bus = 1;
   double speed = 1;
   bool wants_json = false;
@@ -55,16 +59,22 @@ struct Options {
 
 Outcome<HostOptions> how_to_serve(const OnStream& /*kind*/, const Options& options) {
   auto host = server_options();
-  if (options.wants_pty || !options.pty.link.empty() || !options.wants_tcp) host.pty = options.pty;
+  const bool is_elsewhere = options.wants_tcp || options.wants_rfc2217;
+  if (options.wants_pty || !options.pty.link.empty() || !is_elsewhere) host.pty = options.pty;
   if (options.wants_tcp) host.tcp = options.tcp;
+  if (options.wants_rfc2217) {
+    host.rfc2217 =
+        TcpOptions{options.tcp.address, options.rfc2217_port, TcpOptions::Protocol::kRfc2217};
+  }
   host.speed = options.speed;
   return host;
 }
 
 Outcome<HostOptions> how_to_serve(const OnServer& kind, const Options& options) {
-  if (options.wants_pty || !options.pty.link.empty()) {
+  if (options.wants_pty || !options.pty.link.empty() || options.wants_rfc2217) {
     return problem(ErrorCode::kUnsupported, options.device,
-                   "it is a TCP server and has no pseudo-terminal; leave out --pty, --link");
+                   "it is a TCP server and has no pseudo-terminal or serial port; leave out --pty, "
+                   "--link, --rfc2217");
   }
   auto host = server_options();
   host.tcp = options.tcp;
@@ -74,7 +84,8 @@ Outcome<HostOptions> how_to_serve(const OnServer& kind, const Options& options) 
 }
 
 Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const Options& options) {
-  if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp || options.speed != 1) {
+  if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp ||
+      options.wants_rfc2217 || options.speed != 1) {
     return problem(
         ErrorCode::kUnsupported, options.device,
         "a bus takes --set, --bus, --json and --check, what --capture needs, and no other option");
@@ -153,9 +164,15 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
   auto* tcp = command->add_option("--tcp", options->tcp.port, "on this TCP port; 0: any free one")
                   ->type_name("PORT")
                   ->transform(whole(0, 65535));
-  command->add_option("--bind", options->tcp.address, "address for --tcp (default: 127.0.0.1)")
-      ->type_name("ADDRESS")
-      ->needs(tcp);
+  auto* rfc2217 = command
+                      ->add_option("--rfc2217", options->rfc2217_port,
+                                   "as a serial port over Telnet on this TCP port; 0: any free one")
+                      ->type_name("PORT")
+                      ->transform(whole(0, 65535));
+  auto* bind = command
+                   ->add_option("--bind", options->tcp.address,
+                                "address for --tcp and --rfc2217 (default: 127.0.0.1)")
+                   ->type_name("ADDRESS");
   command
       ->add_option("--speed", options->speed,
                    "device time over wall time, 0.001 to 10000 (default: 1)")
@@ -172,8 +189,12 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
                     "say where it listens as one line of JSON; the report of --check too");
   add_capture_options(*command, options->capture);
   add_program_check(*command, options->wants_check, options->files, options->colour);
-  command->callback([options, tcp, devices, &action] {
+  command->callback([options, tcp, rfc2217, bind, devices, &action] {
     options->wants_tcp = tcp->count() > 0;
+    options->wants_rfc2217 = rfc2217->count() > 0;
+    if (bind->count() > 0 && !options->wants_tcp && !options->wants_rfc2217) {
+      throw CLI::RequiresError{"--bind", "--tcp or --rfc2217"};
+    }
     action = [options, devices] { return emulate(devices, *options); };
   });
 }

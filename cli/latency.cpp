@@ -14,6 +14,7 @@
 
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
+#include "cli/foreign_options.hpp"
 #include "cli/outputs.hpp"
 #include "cli/report_files.hpp"
 #include "cli/signals.hpp"
@@ -24,7 +25,7 @@
 #include "harness/latency/latency_run.hpp"
 #include "harness/latency/load.hpp"
 #include "harness/latency/recorded.hpp"
-#include "harness/report/wording.hpp"
+#include "harness/latency/sending.hpp"
 #include "harness/rig/direct_line.hpp"
 
 namespace armjig::cli {
@@ -52,6 +53,7 @@ struct Options {
   std::string device;
   TargetOptions target;
   std::string against;
+  std::string exchange;
   std::string sweep;
   std::string from;
   std::string baseline;
@@ -71,12 +73,21 @@ struct Options {
   bool has_cost = false;
   std::optional<double> cost_limit;
   std::uint64_t seed = 1;
+  std::uint64_t sending = 0;
 };
 
 constexpr double kLeastRate = 0.1;
 constexpr double kMostRate = 20'000;
 constexpr double kUsualSeconds = 10;
-constexpr Duration kSlice = 1s;  ///< of two targets that are alternated
+
+/// Of two targets that are alternated: short, so that each has its share of whatever the machine
+/// does beside, and with some requests in it.
+Duration slice_of_time(const std::optional<Duration>& period) {
+  constexpr Duration kSlice = 250ms;
+  constexpr int kFewestRequests = 20;
+  return period ? std::max(kSlice, kFewestRequests * *period) : kSlice;
+}
+
 constexpr std::uint64_t kMostSlices = 1'000'000;
 
 /// What was asked for, read.
@@ -126,6 +137,9 @@ std::optional<Problem> problem_of(const Options& options, const RigOptions& how)
   const bool is_virtual = how.target.is_emulated();
   if (is_virtual && !options.load.empty()) {
     return Problem{ErrorCode::kBadValue, "--load", "it means nothing in virtual time"};
+  }
+  if (is_virtual && options.sending > 0) {
+    return Problem{ErrorCode::kBadValue, "--sending", "in virtual time nothing leaves"};
   }
   if (is_virtual && options.is_closed_loop && !options.count) {
     return Problem{ErrorCode::kBadValue, "--closed-loop",
@@ -178,9 +192,15 @@ Outcome<std::vector<Point>> points_of(const Options& options) {
 /// A target that is measured.
 class Station {
  public:
-  static Outcome<std::unique_ptr<Station>> open(const Device& device, const RigOptions& how) {
+  /// `exchange`: another than the probe's first; empty: that.
+  static Outcome<std::unique_ptr<Station>> open(const Device& device, const RigOptions& how,
+                                                const std::string& exchange) {
     auto opened = open_probe(device, how);
     if (!opened) return tl::unexpected{opened.error()};
+    if (!exchange.empty()) {
+      const auto chosen = opened->probe->choose(exchange);
+      if (!chosen) return tl::unexpected{chosen.error()};
+    }
     return std::make_unique<Station>(*std::move(opened), how);
   }
   Station(ProbedLink opened, const RigOptions& how)
@@ -195,6 +215,10 @@ class Station {
   [[nodiscard]] Meter& meter() { return *meter_; }
   [[nodiscard]] const Probe& probe() const { return *probe_; }
   [[nodiscard]] const Path& path() const { return *path_; }
+  [[nodiscard]] Result<LatencyHistogram> time_sending(const SendingPlan& plan,
+                                                      const Signals& signals) {
+    return armjig::time_sending(*path_, *probe_, plan, [&signals] { return signals.has_come(); });
+  }
 
   /// Why the guard would refuse the request.
   [[nodiscard]] std::optional<Problem> refusal_of(const RigOptions& how) const {
@@ -260,18 +284,19 @@ std::string machine() {
 Result<bool> alternate(std::span<const std::unique_ptr<Station>> stations, const Wanted& wanted,
                        std::array<std::vector<Slice>, 2>& slices) {
   const bool is_counted = wanted.until.time == Duration::max();
-  const auto per_slice = wanted.plan.period ? kSlice / *wanted.plan.period : 100;
+  const auto slice = slice_of_time(wanted.plan.period);
+  const auto per_slice = wanted.plan.period ? slice / *wanted.plan.period : 100;
   const auto count_a_slice =
       static_cast<std::uint64_t>(std::max<Duration::rep>(per_slice, 1)) * wanted.plan.burst;
   const auto all = is_counted ? wanted.until.count / count_a_slice
-                              : static_cast<std::uint64_t>(wanted.until.time / kSlice);
+                              : static_cast<std::uint64_t>(wanted.until.time / slice);
   for (std::uint64_t i = 0; i < std::clamp<std::uint64_t>(all, 1, kMostSlices); ++i) {
     // Who comes first changes, or one would always follow the other.
     for (const std::size_t side : {i % 2, 1 - i % 2}) {
       auto& meter = stations[side]->meter();
       const auto before = meter.measured().trips.size();
       const auto until =
-          is_counted ? Meter::Until{.count = count_a_slice} : Meter::Until{.time = kSlice};
+          is_counted ? Meter::Until{.count = count_a_slice} : Meter::Until{.time = slice};
       const auto done = meter.run(until);
       if (!done || !*done) return done;
       const auto trips = std::span{meter.measured().trips}.subspan(before);
@@ -329,7 +354,9 @@ Outcome<LatencyRun> parse_run(Devices devices, const Device& device, const Optio
     return problem(ErrorCode::kUnsupported, options.from,
                    "nobody has said what requests and answers of this device are in a recording");
   }
-  auto reader = CaptureReader::open(*std::move(file), options.from);
+  const auto how = foreign_how(devices, {}, device.name);
+  if (!how) return tl::unexpected{how.error()};
+  auto reader = open_foreign(*std::move(file), options.from, *how);
   if (!reader) return tl::unexpected{std::move(reader.error())};
   const auto is_ours = [&](std::string_view name) {
     return name.empty() || find_recorded_device(devices, name) == &device;
@@ -337,9 +364,7 @@ Outcome<LatencyRun> parse_run(Devices devices, const Device& device, const Optio
   auto run = run_of(**reader, {.make_listener = device.make_listener,
                                .is_ours = is_ours,
                                .patience = duration_of(options.timeout)});
-  if (const auto warning = (*reader)->warning(); run && !warning.empty()) {
-    fmt::print(stderr, "armjig: {}\n", wording::line(warning));
-  }
+  if (run) print_warning_of(**reader);
   return run;
 }
 
@@ -366,7 +391,7 @@ Outcome<Ended> measure(const Device& device, std::span<const RigOptions> hows,
                        const Options& options, const Wanted& wanted, const Signals& signals) {
   std::vector<std::unique_ptr<Station>> stations;
   for (const auto& one : hows) {
-    auto station = Station::open(device, one);
+    auto station = Station::open(device, one, options.exchange);
     if (!station) return tl::unexpected{station.error()};
     if (auto refused = (*station)->refusal_of(one)) return tl::unexpected{*std::move(refused)};
     stations.push_back(*std::move(station));
@@ -400,6 +425,15 @@ Outcome<Ended> measure(const Device& device, std::span<const RigOptions> hows,
     Sentinel sentinel{stations[0]->path().now(), 1ms, 100us};
     done = work();
     sentinel.stop();
+    if (done && *done && options.sending > 0) {
+      // What was measured is not lost with the link.
+      run.sending = stations.back()
+                        ->time_sending({.count = options.sending,
+                                        .period = wanted.plan.period.value_or(10ms),
+                                        .patience = wanted.plan.patience},
+                                       signals)
+                        .value_or(LatencyHistogram{});
+    }
     run.witness =
         Witness{sentinel.lateness(), {sentinel.oversleeps().begin(), sentinel.oversleeps().end()}};
   }
@@ -510,6 +544,10 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
       ->add_option("--compare", options->baseline, "is it slower than this --json of another run?")
       ->type_name("FILE")
       ->excludes(against);
+  command
+      ->add_option("--exchange", options->exchange,
+                   "what is asked, if the device has several (docs/latency.md)")
+      ->type_name("NAME");
   auto* rate = command->add_option("--rate", options->rate, "requests a second (default: 100)")
                    ->type_name("HZ")
                    ->check(number(kLeastRate, kMostRate));
@@ -527,6 +565,11 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
       ->type_name("S")
       ->check(number(0.001, 1e7))
       ->excludes(count);
+  command
+      ->add_option("--sending", options->sending,
+                   "afterwards time how long so many further requests take to the link (TCP)")
+      ->type_name("N")
+      ->transform(whole(1, 10'000));
   command
       ->add_option("--timeout", options->timeout, "an answer later than that is lost (default: 1)")
       ->type_name("S")
@@ -571,8 +614,8 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
   from->type_name("FILE");
   for (const auto* const other :
        {"--target", "--allow", "--impair", "--capture", "--rotate", "--redact", "--against",
-        "--rate", "--closed-loop", "--burst", "--sweep", "--count", "--seconds", "--load",
-        "--priority", "--processor"}) {
+        "--exchange", "--rate", "--closed-loop", "--burst", "--sweep", "--count", "--seconds",
+        "--load", "--priority", "--processor", "--sending"}) {
     from->excludes(command->get_option(other));
   }
   command->callback([options, devices, &action] {

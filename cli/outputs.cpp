@@ -107,7 +107,8 @@ void StandardStream::lead_to(int descriptor) {
 
 ssize_t StandardStream::put(void* self, const char* text, std::size_t size) {
   auto& stream = *static_cast<StandardStream*>(self);
-  if (stream.error_ == 0) stream.error_ = write_all(stream.descriptor_, {text, size});
+  std::string_view rest{text, size};
+  if (stream.error_ == 0) stream.error_ = write_all(stream.descriptor_, rest);
   return static_cast<ssize_t>(size);
 }
 

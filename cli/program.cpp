@@ -21,6 +21,7 @@
 #include "cli/checks.hpp"
 #include "cli/choice.hpp"
 #include "cli/device.hpp"
+#include "cli/diff.hpp"
 #include "cli/outputs.hpp"
 #include "cli/terminal.hpp"
 #include "harness/core/version.hpp"
@@ -29,9 +30,10 @@
 namespace armjig::cli {
 namespace {
 
-constexpr std::array kCommands{add_conformance, add_console, add_decode,    add_devices, add_doctor,
-                               add_emulate,     add_kin,     add_lab,       add_latency, add_record,
-                               add_trace,       add_watch,   add_completion};
+constexpr std::array kCommands{add_conformance, add_console, add_decode,    add_devices,
+                               add_diff,        add_doctor,  add_emulate,   add_kin,
+                               add_lab,         add_latency, add_record,    add_replay,
+                               add_trace,       add_watch,   add_wireshark, add_completion};
 
 constexpr auto kDescription =
     "Test jig for robot-arm controllers and the programs that drive them.\n"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "cli/record.hpp"
+
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -10,10 +12,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "cli/capture_options.hpp"
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
-#include "cli/report_files.hpp"
 #include "cli/serving.hpp"
 #include "cli/terminal.hpp"
 #include "emulators/host/relay.hpp"
@@ -38,18 +38,7 @@ constexpr auto kHelp =
     "\n"
     "Exit codes: 0 recorded, 1 findings of --check, 3 the device is not there, or gone.";
 
-struct Options {
-  std::string device;
-  std::string listen;
-  std::string target;
-  CaptureOptions capture;
-  bool wants_json = false;
-  bool wants_check = false;
-  ReportFiles files;
-  std::string colour;
-};
-
-tl::unexpected<Problem> bad_place(const Options& options, std::string_view hint) {
+tl::unexpected<Problem> bad_place(const RecordOptions& options, std::string_view hint) {
   return problem(ErrorCode::kBadValue, "--listen " + options.listen, std::string{hint});
 }
 
@@ -70,9 +59,11 @@ std::optional<TcpOptions> parse_tcp_place(std::string_view text) {
   return tcp;
 }
 
-Outcome<Serving> parse_listen(const Options& options, const Device& device) {
+Outcome<Serving> parse_listen(const RecordOptions& options, const Device& device) {
   constexpr int kLastBus = 255;
   Serving serving{options.device, server_options(), 1, options.wants_json};
+  serving.is_quiet = options.is_quiet;
+  if (options.is_quiet) serving.how.log = [](std::string_view /*line*/) {};
   std::string_view place = options.listen;
   const auto takes = [&place](std::string_view scheme) {
     if (!place.starts_with(scheme)) return false;
@@ -140,7 +131,9 @@ void print_lateness(const RelayStatistics& statistics) {
   }
 }
 
-Exit record(Devices devices, const Options& options) {
+}  // namespace
+
+Exit record(Devices devices, const RecordOptions& options) {
   const auto found = find_device(devices, options.device);
   if (!found) return report(found.error());
   const auto& device = **found;
@@ -169,7 +162,7 @@ Exit record(Devices devices, const Options& options) {
       },
       device.port);
   if (!served) return report(served.error());
-  print_lateness(statistics);
+  if (!options.is_quiet) print_lateness(statistics);
   const auto exit =
       *check ? conclude(**check, options.wants_json, options.colour, *files) : Exit::kPassed;
   if (!statistics.failure) return exit;
@@ -178,11 +171,9 @@ Exit record(Devices devices, const Options& options) {
   return exit == Exit::kFindings ? exit : Exit::kRig;
 }
 
-}  // namespace
-
 void add_record(CLI::App& app, Devices devices, Action& action) {
   auto* command = app.add_subcommand("record", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RecordOptions>();
   add_device_argument(*command, options->device, devices);
   command
       ->add_option("--listen", options->listen,

@@ -45,7 +45,7 @@ void announce(const Serving& serving, const std::vector<std::string>& targets,
       fmt::print("listening {}{}\n", targets[i], i == link ? " (link)" : "");
     }
   }
-  std::fflush(stdout);  // whoever waits for the line may be behind a pipe
+  std::fflush(stdout);  // who waits for the line may read it from a pipe
 }
 
 void print_statistics(const HostStatistics& statistics) {
@@ -106,7 +106,7 @@ Outcome<void> serve(AnyHosted hosted, const Serving& serving) {
     }
     host->run();
   }
-  print_statistics(host->statistics());
+  if (!serving.is_quiet) print_statistics(host->statistics());
   return {};
 }
 

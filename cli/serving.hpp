@@ -21,6 +21,7 @@ struct Serving {
   HostOptions how;  ///< not of a bus
   int bus = 1;      ///< the N of /dev/i2c-N
   bool wants_json = false;
+  bool is_quiet = false;  ///< no statistics at the end
 };
 
 /// With signals and a log, as servers have them.

@@ -12,11 +12,13 @@
 #include "cli/device.hpp"
 #include "cli/trace_files.hpp"
 #include "cli/trace_random.hpp"
+#include "emulators/replay/on_port.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/nesting.hpp"
 #include "harness/files/user_file.hpp"
 #include "harness/report/wording.hpp"
+#include "harness/rig/target.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -27,6 +29,7 @@ constexpr auto kHelp =
     "  armjig trace verify captures                 all recordings below a folder\n"
     "  armjig trace verify session.jsonl            one of them\n"
     "  armjig trace verify matrix.json              a table of states and commands\n"
+    "  armjig trace verify capture.pcapng           what --capture wrote of an emulated device\n"
     "\n"
     "Folders are searched for *.jsonl. For each file 'identical' or the first difference is\n"
     "printed; the last line counts them. A table of states and commands (*.json) is verified cell\n"
@@ -75,6 +78,32 @@ void verify_table(const std::string& path, Devices devices, Tally& tally) {
   }
 }
 
+/// Whether `--capture` made it.
+bool is_of_capture(const Trace& trace) {
+  const auto header = nlohmann::json::parse(trace.header, nullptr, /*allow_exceptions=*/false);
+  return header.is_object() && header.value("title", nlohmann::json{}) == "capture";
+}
+
+/// By a device like the one that was recorded, on a port in memory.
+Outcome<std::optional<TraceDifference>> verify_capture(const Trace& trace, const Device& device) {
+  const auto text = emulated_target_of(trace);
+  if (!text) return tl::unexpected{text.error()};
+  const auto target = parse_target(*text);
+  if (!target) return tl::unexpected{target.error()};
+  return std::visit(
+      [&](const auto& kind) -> Outcome<std::optional<TraceDifference>> {
+        const auto port = wiring_of(device, kind).open_emulated(*target);
+        if (!port) return tl::unexpected{port.error()};
+        const auto replayed = replay_on(**port, trace);
+        if (!replayed) return tl::unexpected{replayed.error()};
+        if (replayed->recorded.empty()) {
+          return problem(ErrorCode::kMalformed, trace.path, "no answer is in there to be verified");
+        }
+        return first_difference(replayed->recorded, replayed->actual);
+      },
+      device.port);
+}
+
 void verify_file(const std::string& path, Devices devices, Tally& tally) {
   if (path.ends_with(".json")) return verify_table(path, devices, tally);
   const auto trace = read_trace(path);
@@ -89,7 +118,8 @@ void verify_file(const std::string& path, Devices devices, Tally& tally) {
                wording::line(trace->device));
     return;
   }
-  const auto difference = verify(*trace, device->replay);
+  const auto difference =
+      is_of_capture(*trace) ? verify_capture(*trace, *device) : verify(*trace, device->replay);
   if (!difference) {
     (void)report(difference.error());
     ++tally.unreadable;

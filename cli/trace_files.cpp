@@ -18,11 +18,14 @@
 
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
+#include "cli/foreign_options.hpp"
 #include "cli/outputs.hpp"
 #include "harness/capture/capture.hpp"
 #include "harness/files/user_file.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/wording.hpp"
 #include "harness/summary/session_summary.hpp"
+#include "harness/summary/session_timeline.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -40,6 +43,7 @@ constexpr auto kShowHelp =
     "\n"
     "  armjig trace show session.pcapng\n"
     "  armjig trace show session.jsonl --json           for scripts\n"
+    "  armjig trace show session.pcapng --html a.html   a page with a time line\n"
     "\n"
     "Exit codes: 0 nothing was wrong on the wire, 1 bytes that are no message, 4 no record.";
 constexpr auto kConvertHelp =
@@ -67,21 +71,19 @@ Exit refuse(const Problem& problem) {
   return Exit::kUsage;
 }
 
-void warn(const CaptureReader& reader) {
-  const auto warning = reader.warning();
-  std::size_t begin = 0;
-  while (begin < warning.size()) {
-    const auto end = std::min(warning.find('\n', begin), warning.size());
-    fmt::print(stderr, "armjig: {}\n", wording::line(warning.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-}
+/// How recordings are read that other programs wrote.
+struct Reading {
+  Devices devices;
+  std::shared_ptr<ForeignOptions> options = std::make_shared<ForeignOptions>();
 
-Outcome<OpenedCapture> open_capture(const std::string& path) {
-  auto file = path == "-" ? UserFile::standard_input() : UserFile::open(path);
-  if (!file) return tl::unexpected{std::move(file.error())};
-  return CaptureReader::open(*std::move(file), path == "-" ? "standard input" : path);
-}
+  Reading(CLI::App& command, Devices all) : devices{all} { add_foreign_options(command, *options); }
+
+  [[nodiscard]] Outcome<OpenedCapture> open(const std::string& path) const {
+    const auto how = foreign_how(devices, *options, {});
+    if (!how) return tl::unexpected{how.error()};
+    return open_recording(path, *how);
+  }
+};
 
 /// A recording that is being written, piece by piece.
 class CaptureOutput {
@@ -132,39 +134,45 @@ class CaptureOutput {
 
 /// Writes those of the records that are wanted.
 template <class Want>
-Exit copy(const std::string& from, const std::string& to, bool is_redacted, Want want) {
+Exit copy(const Reading& reading, const std::string& from, const std::string& to, bool is_redacted,
+          Want want) {
   auto output = CaptureOutput::open("OUT", to, {from});
   if (!output) return report(output.error());
-  const auto reader = open_capture(from);
+  const auto reader = reading.open(from);
   if (!reader) return refuse(reader.error());
   const auto& header = (*reader)->header();
   auto written = output->begin(is_redacted ? header.redacted() : header);
   std::uint64_t records = 0;
+  bool has_any = false;
   CaptureRecord record;
   std::optional<Problem> unreadable;
   while (written) {
     const auto has_record = (*reader)->next(record);
     if (!has_record) unreadable = has_record.error();
     if (!has_record || !*has_record) break;
+    has_any = true;
     if (!want(record)) continue;
     written = output->add(record);
     ++records;
   }
   if (written) written = output->flush();
-  warn(**reader);
+  print_warning_of(**reader);
   if (unreadable) return refuse(*unreadable);  // what came before it is written
   if (!written && written.error().code == ErrorCode::kUnsupported) return refuse(written.error());
   if (!written) return Exit::kRig;  // which `Outputs` tells
-  return records > 0 ? Exit::kPassed : Exit::kNothing;
+  if (records > 0) return Exit::kPassed;
+  fmt::print(stderr, "armjig trace: nothing of '{}' is in '{}': it has no record{}\n", from, to,
+             has_any ? " that was asked for" : "");
+  return Exit::kNothing;
 }
 
 /// Records of several recordings in one order.
 class Merge {
  public:
-  static Outcome<Merge> open(const std::vector<std::string>& paths) {
+  static Outcome<Merge> open(const Reading& reading, const std::vector<std::string>& paths) {
     Merge merge;
     for (const auto& path : paths) {
-      auto reader = open_capture(path);
+      auto reader = reading.open(path);
       if (!reader) return tl::unexpected{std::move(reader.error())};
       merge.inputs_.push_back({.reader = *std::move(reader), .record = {}, .links = {}});
     }
@@ -204,7 +212,7 @@ class Merge {
   }
 
   void warn_all() const {
-    for (const auto& input : inputs_) warn(*input.reader);
+    for (const auto& input : inputs_) print_warning_of(*input.reader);
   }
 
  private:
@@ -258,10 +266,10 @@ class Merge {
   Input* last_ = nullptr;
 };
 
-Exit merge(const std::vector<std::string>& paths, const std::string& to) {
+Exit merge(const Reading& reading, const std::vector<std::string>& paths, const std::string& to) {
   auto output = CaptureOutput::open("--out", to, paths);
   if (!output) return report(output.error());
-  auto merged = Merge::open(paths);
+  auto merged = Merge::open(reading, paths);
   if (!merged) return refuse(merged.error());
   auto written = output->begin(merged->header());
   CaptureRecord record;
@@ -283,8 +291,7 @@ Exit merge(const std::vector<std::string>& paths, const std::string& to) {
 std::string title_of(const std::string& path, const CaptureReader& reader) {
   const auto& header = reader.header();
   const auto json = Json::parse(header.json);
-  auto text = fmt::format("{}: {}, device {}\n", wording::line(path),
-                          reader.format() == CaptureFormat::kPcapng ? "pcapng" : "golden-trace/1",
+  auto text = fmt::format("{}: {}, device {}\n", wording::line(path), reader.format(),
                           wording::line(header.device));
   for (const char* const key : {"title", "target", "profile", "source"}) {
     const auto found = json.find(key);
@@ -298,10 +305,10 @@ std::string title_of(const std::string& path, const CaptureReader& reader) {
   return text;
 }
 
-Exit info(const std::vector<std::string>& paths) {
+Exit info(const Reading& reading, const std::vector<std::string>& paths) {
   bool are_all_read = true;
   for (const auto& path : paths) {
-    const auto reader = open_capture(path);
+    const auto reader = reading.open(path);
     if (!reader) {
       (void)report(reader.error());
       are_all_read = false;
@@ -326,34 +333,91 @@ Exit info(const std::vector<std::string>& paths) {
       fmt::print("{:<12} {}: {} records, {} bytes\n", "link", wording::line(name), count.records,
                  count.bytes);
     }
-    warn(**reader);
+    print_warning_of(**reader);
     if (!has_record) (void)report(has_record.error());
     are_all_read = are_all_read && has_record;
   }
   return are_all_read ? Exit::kPassed : Exit::kUsage;
 }
 
-Exit show(const std::string& path, bool wants_json, Devices devices) {
-  const auto reader = open_capture(path);
+struct Showing {
+  std::string path;
+  bool wants_json = false;
+  std::string html;
+};
+
+/// Lines that begin with a word, or with blanks if they go on with that of the line before.
+Table table_of(std::string_view text) {
+  constexpr std::size_t kWordWidth = 13;
+  Table table{{"what", "seen"}, {}};
+  for (std::size_t begin = 0; begin < text.size();) {
+    const auto end = std::min(text.find('\n', begin), text.size());
+    const auto line = text.substr(begin, end - begin);
+    begin = end + 1;
+    const auto word = line.substr(0, kWordWidth);
+    const auto first = word.find_first_not_of(' ');
+    const auto last = word.find_last_not_of(' ');
+    table.rows.push_back(
+        {std::string{first == std::string_view::npos ? "" : word.substr(first, last - first + 1)},
+         std::string{line.substr(std::min(line.size(), kWordWidth))}});
+  }
+  return table;
+}
+
+Report page_of(const std::string& path, const std::string& title, const SessionSummary& summary,
+               const SessionTimeline& session) {
+  Report page;
+  page.title = wording::line(path);
+  const auto first_end = title.find('\n');
+  page.facts.emplace_back("recording",
+                          title.substr(page.title.size() + 2, first_end - page.title.size() - 2));
+  for (auto& cells : table_of(title.substr(first_end + 1)).rows) {
+    page.facts.emplace_back(cells[0], cells[1]);
+  }
+  auto& line = page.sections.emplace_back();
+  line.title = "Time line";
+  line.timelines.push_back(session.timeline("The session over time", summary.end()));
+  auto& words = page.sections.emplace_back();
+  words.title = "At a glance";
+  words.table = table_of(summary.to_text());
+  return page;
+}
+
+Exit show(const Reading& reading, const Showing& options) {
+  const auto files = open_outputs({{"--html", options.html}});
+  if (!files) return report(files.error());
+  const auto& [html] = *files;
+  const auto reader = reading.open(options.path);
   if (!reader) return refuse(reader.error());
-  SessionSummary summary{[devices](std::string_view name) -> MakeDissector {
-    const auto* const device = find_recorded_device(devices, name);
-    return device == nullptr ? nullptr : device->make_dissector;
-  }};
+  SessionTimeline session;
+  HearMessage hear;
+  if (html) {
+    hear = [&session](const auto& link, auto id, const auto& message) {
+      session.add(link, id, message);
+    };
+  }
+  SessionSummary summary{[devices = reading.devices](std::string_view name) -> MakeDissector {
+                           const auto* const device = find_recorded_device(devices, name);
+                           return device == nullptr ? nullptr : device->make_dissector;
+                         },
+                         std::move(hear)};
   CaptureRecord record;
   Outcome<bool> has_record = true;
   bool is_empty = true;
   while ((has_record = (*reader)->next(record)) && *has_record) {
     summary.add(record);
+    if (html && record.link->kind == LinkKind::kEvents) session.add_event(record);
     is_empty = false;
   }
   summary.finish();
-  if (wants_json) {
+  const auto title = title_of(options.path, **reader);
+  if (options.wants_json) {
     fmt::print("{}\n", summary.to_json());
   } else {
-    fmt::print("{}{}", title_of(path, **reader), wording::lines(summary.to_text()));
+    fmt::print("{}{}", title, wording::lines(summary.to_text()));
   }
-  warn(**reader);
+  if (html) html->put(to_html(page_of(options.path, title, summary, session)));
+  print_warning_of(**reader);
   if (!has_record) return refuse(has_record.error());
   if (is_empty) return Exit::kNothing;
   return summary.has_findings() ? Exit::kFindings : Exit::kPassed;
@@ -396,21 +460,28 @@ void add_trace_files(CLI::App& trace, Devices devices, Action& action) {
   auto* info_command = trace.add_subcommand("info", kInfoHelp);
   const auto paths = std::make_shared<std::vector<std::string>>();
   info_command->add_option("FILE", *paths, "recordings; '-' for standard input")->required();
-  info_command->callback([paths, &action] { action = [paths] { return info(*paths); }; });
+  const Reading info_reading{*info_command, devices};
+  info_command->callback([paths, info_reading, &action] {
+    action = [paths, info_reading] { return info(info_reading, *paths); };
+  });
 
   auto* show_command = trace.add_subcommand("show", kShowHelp);
-  const auto shown = std::make_shared<std::pair<std::string, bool>>();
-  show_command->add_option("FILE", shown->first, "a recording; '-' for standard input")->required();
-  show_command->add_flag("--json", shown->second, "one JSON object (docs/schemas)");
-  show_command->callback([shown, devices, &action] {
-    action = [shown, devices] { return show(shown->first, shown->second, devices); };
+  const auto shown = std::make_shared<Showing>();
+  show_command->add_option("FILE", shown->path, "a recording; '-' for standard input")->required();
+  show_command->add_flag("--json", shown->wants_json, "one JSON object (docs/schemas)");
+  show_command->add_option("--html", shown->html, "also write a page with a time line to this file")
+      ->type_name("FILE");
+  const Reading show_reading{*show_command, devices};
+  show_command->callback([shown, show_reading, &action] {
+    action = [shown, show_reading] { return show(show_reading, *shown); };
   });
 
   auto* convert_command = trace.add_subcommand("convert", kConvertHelp);
   const auto converted = add_copying(*convert_command);
-  convert_command->callback([converted, &action] {
-    action = [converted] {
-      return copy(converted->in, converted->out, converted->is_redacted,
+  const Reading convert_reading{*convert_command, devices};
+  convert_command->callback([converted, convert_reading, &action] {
+    action = [converted, convert_reading] {
+      return copy(convert_reading, converted->in, converted->out, converted->is_redacted,
                   [](const CaptureRecord&) { return true; });
     };
   });
@@ -428,12 +499,13 @@ void add_trace_files(CLI::App& trace, Devices devices, Action& action) {
       ->type_name("N")
       ->transform(whole(0, std::numeric_limits<std::uint32_t>::max()));
   cut_command->add_option("--device", cut->device, "only this one")->type_name("DEVICE");
-  cut_command->callback([cut, &action] {
-    action = [cut] {
+  const Reading cut_reading{*cut_command, devices};
+  cut_command->callback([cut, cut_reading, &action] {
+    action = [cut, cut_reading] {
       if (cut->to < cut->from) {
         return report({ErrorCode::kBadValue, "--to", "it is before --from"});
       }
-      return copy(cut->in, cut->out, cut->is_redacted,
+      return copy(cut_reading, cut->in, cut->out, cut->is_redacted,
                   [&cut](const CaptureRecord& record) { return cut->wants(record); });
     };
   });
@@ -444,8 +516,12 @@ void add_trace_files(CLI::App& trace, Devices devices, Action& action) {
   merge_command->add_option("--out", merged->second, "a file .pcapng or .jsonl")
       ->type_name("FILE")
       ->required();
-  merge_command->callback(
-      [merged, &action] { action = [merged] { return merge(merged->first, merged->second); }; });
+  const Reading merge_reading{*merge_command, devices};
+  merge_command->callback([merged, merge_reading, &action] {
+    action = [merged, merge_reading] {
+      return merge(merge_reading, merged->first, merged->second);
+    };
+  });
 }
 
 }  // namespace armjig::cli

@@ -55,7 +55,17 @@ if(ARMJIG_BUILD_CLI)
                      DEPENDS armjig cmake/man_page.cmake VERBATIM)
   add_custom_command(OUTPUT 60-armjig.rules COMMAND armjig doctor --udev-rules > 60-armjig.rules
                      VERBATIM)
-  add_custom_target(printed ALL DEPENDS ${printed} armjig.1.gz 60-armjig.rules)
+  # Where Debian's Wireshark looks for the dissectors of all users, and for programs that capture.
+  set(wireshark_dir lib/${CMAKE_LIBRARY_ARCHITECTURE}/wireshark)
+  add_custom_command(OUTPUT wireshark/armjig_parol6.lua
+                     COMMAND armjig wireshark install --to wireshark DEPENDS armjig VERBATIM)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/wireshark/ DESTINATION ${wireshark_dir}/plugins
+          COMPONENT runtime FILES_MATCHING PATTERN "*.lua" PATTERN extcap EXCLUDE)
+  configure_file(packaging/wireshark-extcap.in wireshark-extcap @ONLY)
+  install(PROGRAMS ${PROJECT_BINARY_DIR}/wireshark-extcap RENAME armjig
+          DESTINATION ${wireshark_dir}/extcap COMPONENT runtime)
+  add_custom_target(printed ALL DEPENDS ${printed} armjig.1.gz 60-armjig.rules
+                                        wireshark/armjig_parol6.lua)
   install(TARGETS armjig RUNTIME COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/armjig.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
           COMPONENT runtime)
@@ -85,8 +95,8 @@ against the rules of their protocols, and replays recordings of real devices.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libarmjig-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-       "libarmjig-embedded-dev (= ${PROJECT_VERSION})" libedit-dev libpugixml-dev
-       libserialport-dev libtomlplusplus-dev libumockdev-dev liburdfdom-dev libusb-1.0-0-dev
+       "libarmjig-embedded-dev (= ${PROJECT_VERSION})" libedit-dev libpcap-dev
+       libpugixml-dev libserialport-dev libtins-dev libtomlplusplus-dev libumockdev-dev liburdfdom-dev libusb-1.0-0-dev
        zlib1g-dev)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "Static libraries and headers of all that the armjig program is
 made of, for programs that put devices of their own on the jig.")

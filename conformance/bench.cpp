@@ -5,6 +5,14 @@
 
 namespace armjig {
 
+Duration Bench::noise() const noexcept {
+  const auto own = longest_answer();
+  const auto link = link_.value_or(Duration{});
+  return heard_ - link > own ? own + link : heard_;
+}
+
+Duration Bench::link_noise() const noexcept { return link_ ? std::min(heard_, *link_) : noise(); }
+
 void Bench::begin(Profile profile, std::uint64_t seed) {
   profile_ = profile;
   judgement_ = {};
@@ -26,7 +34,15 @@ void Bench::fail_by_silence(std::string expected, std::string actual) {
   decide({Verdict::kFail, std::move(expected), std::move(actual), true});
 }
 
-void Bench::skip(std::string reason) { decide({Verdict::kSkipped, {}, std::move(reason)}); }
+void Bench::skip(std::string reason) {
+  Judgement judgement{Verdict::kSkipped, {}, std::move(reason)};
+  judgement.is_left_out = true;
+  decide(std::move(judgement));
+}
+
+void Bench::give_up(std::string reason) { decide({Verdict::kSkipped, {}, std::move(reason)}); }
+
+void Bench::blame_rig(std::string reason) { decide({Verdict::kError, {}, std::move(reason)}); }
 
 void Bench::leave_open(std::string reason) {
   decide({Verdict::kInconclusive, {}, std::move(reason)});
@@ -34,6 +50,23 @@ void Bench::leave_open(std::string reason) {
 
 void Bench::expect_true(bool is_so, std::string_view wanted, std::string_view otherwise) {
   if (!is_so) fail(behind(wanted), std::string{otherwise});
+}
+
+void Bench::expect_in_time(const InBounds& measured, std::string_view wanted,
+                           std::string_view otherwise) {
+  if (is_over_) return;
+  const auto& [value, least, most, unit] = measured;
+  const auto room = std::min(value - least, most - value) / (most - least);
+  if (judgement_.margin.empty() || room < room_) {
+    room_ = room;
+    judgement_.margin =
+        behind(fmt::format("{:.1f} of {:.1f} to {:.1f} {}", value, least, most, unit));
+  }
+  if (value >= least && value <= most) return;
+  Judgement judgement{Verdict::kFail, behind(wanted), std::string{otherwise}};
+  judgement.is_timing = true;
+  judgement.margin = judgement_.margin;
+  decide(std::move(judgement));
 }
 
 std::string Bench::behind(std::string_view text) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <random>
 #include <type_traits>
@@ -26,6 +27,28 @@ struct Judgement {
   /// Where in the device's message it was seen, in bytes from its beginning; none if `actual` names
   /// a field, or is about something else.
   std::optional<std::size_t> byte{};
+  bool is_left_out = false;  ///< skipped because link or hands do not reach as far
+  bool is_timing = false;    ///< about when something came, which link and machine have a part in
+  std::string margin{};      ///< what was measured nearest to a bound, and its bounds
+};
+
+/// What was measured, and its bounds.
+struct InBounds {
+  double value{};
+  double least{};
+  double most{};
+  std::string_view unit;
+};
+
+/// Somebody or something beside the device that sets its inputs, such as a board of relays.
+struct Hand {
+  /// Whether there is something to set an input with; nothing is done.
+  std::function<bool(std::string_view input)> has = [](std::string_view /*input*/) {
+    return false;
+  };
+  /// Sets it. False: nobody could.
+  std::function<bool(std::string_view input, std::int64_t value)> set =
+      [](std::string_view /*input*/, std::int64_t /*value*/) { return false; };
 };
 
 /// What a case works on: a conversation with one device, on whatever link that has. Each suite has
@@ -49,8 +72,19 @@ class Bench {
 
   /// Learns how much later than needed answers come here. Called once, before the first case.
   virtual void measure_noise() = 0;
-  /// The most that was seen then; in virtual time what the device itself takes.
-  [[nodiscard]] Duration noise() const noexcept { return noise_; }
+  /// The most that was seen then, the device's own time in it.
+  [[nodiscard]] Duration heard_noise() const noexcept { return heard_; }
+  /// The same, but no more than a device that obeys may take, and the link.
+  [[nodiscard]] Duration noise() const noexcept;
+  /// What link and machine have added to it at most, without the device.
+  [[nodiscard]] Duration link_noise() const noexcept;
+  /// So late come answers of an emulated device on a link of the same kind; none: nobody knows.
+  void know_link(std::optional<Duration> noise) noexcept { link_ = noise; }
+
+  /// For what neither link nor emulated device offers.
+  void set_hand(Hand hand) { hand_ = std::move(hand); }
+  /// Whether a device whose program a case has ended or hung can be put right again.
+  [[nodiscard]] virtual bool can_restart() { return true; }
 
   /// After this process did not run for a while: what was stopped because of that may move again.
   virtual void resume() {}
@@ -76,12 +110,17 @@ class Bench {
   /// The same for that byte of the device's newest message.
   void fail_at(std::size_t byte, std::string expected, std::string actual);
   void fail_by_silence(std::string expected, std::string actual);
-  void skip(std::string reason);
+  void skip(std::string reason);     ///< what it needs, link or hands do not offer
+  void give_up(std::string reason);  ///< skips it for what does not lie in that
+  void blame_rig(std::string reason);
   void leave_open(std::string reason);  ///< inconclusive
 
   /// What comes next is about this: it stands after every expectation until it is said again.
   void about(std::string what) { about_ = std::move(what); }
   void expect_true(bool is_so, std::string_view wanted, std::string_view otherwise);
+  /// The same of a moment or a pace: tried again before it counts, where time is real.
+  void expect_in_time(const InBounds& measured, std::string_view wanted,
+                      std::string_view otherwise);
 
  protected:
   virtual void forget_exchange() = 0;
@@ -92,7 +131,10 @@ class Bench {
   [[nodiscard]] std::string behind(std::string_view text) const;
   [[nodiscard]] const std::string& subject() const noexcept { return about_; }
   void lose_link(const Error& error) { error_ = error; }
-  void hear_noise(Duration noise) { noise_ = std::max(noise_, noise); }
+  [[nodiscard]] const Hand& hand() const noexcept { return hand_; }
+  void hear_noise(Duration noise) { heard_ = std::max(heard_, noise); }
+  /// What the requirements leave a device for its answer.
+  [[nodiscard]] virtual Duration longest_answer() const noexcept { return Duration::max(); }
 
  private:
   void decide(Judgement judgement);
@@ -101,8 +143,11 @@ class Bench {
   Judgement judgement_;
   std::string about_;
   std::optional<Error> error_;
-  Duration noise_{};
+  Duration heard_{};
+  std::optional<Duration> link_;
+  Hand hand_;
   bool is_over_ = false;
+  double room_{};  ///< from the margin to its bound, as a share of the way between the bounds
   std::mt19937 random_;
 };
 

@@ -49,6 +49,7 @@ class Trial {
     bench_->begin(profile_, kSeed);
     if (!bench_->is_alive()) return false;
     bench_->measure_noise();
+    bench_->know_link(Duration{});
     return true;
   }
 

@@ -31,7 +31,7 @@ class PortBench : public Bench {
   /// Does at the device what its link cannot: a switch, an input, the power. Skips the case where
   /// nobody can.
   void touch(std::string_view input, std::int64_t value) {
-    if (is_deaf() || port().touch(input, value)) return;
+    if (is_deaf() || reach(input, value)) return;
     skip(std::string{"needs a hand at the device, to set "}.append(input));
   }
 
@@ -45,21 +45,59 @@ class PortBench : public Bench {
   [[nodiscard]] Port& port() const noexcept { return rig_.port(); }
   [[nodiscard]] const Rig<Port>& rig() const noexcept { return rig_; }
 
-  /// Whether something was done at the port. What the guard forbids skips the case, for the device
-  /// has not done anything wrong.
+  /// The same; false where nobody can.
+  [[nodiscard]] bool reach(std::string_view input, std::int64_t value) {
+    return port().touch(input, value) ||
+           (this->hand().has(input) && this->hand().set(input, value));
+  }
+
+  /// Whether something was done at the port. What the guard does not allow skips the case; what it
+  /// refuses because of where the device went is a finding.
   template <class Result>
   bool is_done(const Result& result) {
     if (result) return true;
     if (result.error().code != ErrorCode::kForbidden) {
       lose_link(result.error());
+    } else if (rig_.last_refusal()) {
+      judge_guard();
     } else {
-      const auto refusal = rig_.last_refusal();
-      skip(refusal ? refusal->reason : "the guard does not allow it");
+      skip("the guard does not allow it");
     }
     return false;
   }
 
+  /// What the guard did until now was before the case.
+  void pass_over_stops() { refusals_ = rig_.refusals(); }
+
+  /// What came of the case if the guard has stopped the device since this was asked last.
+  void judge_stop() {
+    if (std::exchange(refusals_, rig_.refusals()) != rig_.refusals()) judge_guard();
+  }
+
  private:
+  void judge_guard() {
+    const auto refusal = rig_.last_refusal();
+    refusals_ = rig_.refusals();
+    switch (refusal->cause) {
+      case Refusal::Cause::kRequest:
+        return this->skip(refusal->reason);
+      case Refusal::Cause::kUnsupervised:
+        return this->give_up(refusal->reason);
+      case Refusal::Cause::kDevice:
+        break;
+    }
+    switch (refusal->matter) {
+      case Refusal::Matter::kStopped:
+        return this->blame_rig(refusal->reason + ", or reads inverted");
+      case Refusal::Matter::kUnseen:
+        return this->fail_by_silence(this->behind("a device that can be seen"), refusal->reason);
+      case Refusal::Matter::kAstray:
+        return this->fail(this->behind("a device that goes where it is led"),
+                          "the guard stopped it: " + refusal->reason);
+    }
+  }
+
+  std::size_t refusals_ = 0;
   mutable Rig<Port> rig_;
 };
 
@@ -75,7 +113,10 @@ class DissectedBench : public PortBench<Port> {
   }
 
  protected:
-  void forget_exchange() override { exchange_.clear(); }
+  void forget_exchange() override {
+    exchange_.clear();
+    this->pass_over_stops();
+  }
 
   /// The messages that are complete with these bytes, which pass now.
   std::vector<Message> dissect(Direction direction, Bytes bytes) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "harness/core/number.hpp"
 
@@ -34,7 +35,9 @@ std::vector<const Case*> select(const Suite& suite, Profile profile, const Selec
       if (is_meant(suite, one, profile, selection)) cases.push_back(&one);
     }
   }
-  std::ranges::stable_sort(cases, {}, &Case::start);
+  std::ranges::stable_sort(cases, {}, [](const Case* one) {
+    return std::pair{one->hazard == Hazard::kCrash, one->start};
+  });
   const auto border = [&](std::size_t shards) {
     return static_cast<std::ptrdiff_t>(cases.size() * shards / selection.shard.count);
   };

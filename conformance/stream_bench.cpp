@@ -47,17 +47,11 @@ void StreamBench::drain(Duration quiet) {
 void StreamBench::read_until(Instant deadline) {
   std::array<std::byte, 4096> buffer;
   const auto size = port().read(buffer, std::min(deadline, now() + kLongestWait));
-  skip_if_stopped();
+  judge_stop();
   if (!size) return lose_link(size.error());
   for (auto& message : dissect(Direction::kFromDevice, std::span{buffer}.first(*size))) {
     arrived_.push_back(std::move(message));
   }
-}
-
-/// What a board shows that was stopped in the middle of a case says nothing about it.
-void StreamBench::skip_if_stopped() {
-  const bool knew = std::exchange(knows_it_is_stopped_, rig().is_unsupervised());
-  if (knows_it_is_stopped_ && !knew) skip(rig().last_refusal()->reason);
 }
 
 }  // namespace armjig

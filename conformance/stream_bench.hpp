@@ -18,7 +18,7 @@ class StreamBench : public DissectedBench<StreamPort> {
  public:
   StreamBench(Rig<StreamPort> rig, std::unique_ptr<Dissector> dissector);
 
-  /// What the guard forbids skips the case, for the device has not done anything wrong.
+  /// What the guard refuses decides the case.
   void send(Bytes bytes);
 
   /// The next message of the device, or bytes that are none; waits at most `within`.
@@ -32,10 +32,8 @@ class StreamBench : public DissectedBench<StreamPort> {
 
  private:
   void read_until(Instant deadline);
-  void skip_if_stopped();
 
   std::deque<Message> arrived_;
-  bool knows_it_is_stopped_ = false;
 };
 
 }  // namespace armjig

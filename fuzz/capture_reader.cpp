@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever stands in a file, of either format: its records are read or refused with a place and a
-// reason, their times never decrease, and what was read can be written as pcapng and read again.
+// Whatever stands in a file, of any format, of other programs, too: its records are read or refused
+// with a place and a reason, their times never decrease, and what was read can be written as pcapng
+// and read again.
 #include <unistd.h>
 
 #include <cstddef>
@@ -12,6 +13,9 @@
 
 #include "fuzz/require.hpp"
 #include "harness/capture/capture.hpp"
+#include "harness/foreign/foreign.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
+#include "harness/wire/parol6/dissector.hpp"
 
 namespace armjig::fuzz {
 namespace {
@@ -36,7 +40,13 @@ struct Copied {
 
 Copied copy(std::string_view content, CaptureFormat format) {
   Copied copied;
-  auto reader = CaptureReader::open(file_of(content), "input");
+  static const ForeignHow kHow{
+      .devices = {{"kinovazed", LinkKind::kSession, kinovazed::make_dissector, false},
+                  {"parol6", LinkKind::kStream, parol6::make_dissector, true},
+                  {"morap", LinkKind::kBus, nullptr, false}},
+      .ports = {{51717, 0}, {4000, 1}},
+      .usb = {}};
+  auto reader = open_foreign(file_of(content), "input", kHow);
   if (!reader) {
     require(!reader.error().hint.empty(), "a problem says what is wrong");
     return copied;

@@ -48,7 +48,8 @@ cli::Device device() {
           .suite = conformance::suite,
           .mutants = conformance::mutants_entry,
           .make_listener = make_listener,
-          .replay = {.run = replay::replay}};
+          .replay = {.run = replay::replay},
+          .dissection = dissection};
 }
 
 }  // namespace armjig::demo

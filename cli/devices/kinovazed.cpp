@@ -33,7 +33,8 @@ cli::Device device() {
                      .compare = replay::session_difference,
                      .write = replay::write,
                      .verify_table = replay::verify_matrix},
-          .draw_session = sessions::draw};
+          .draw_session = sessions::draw,
+          .dissection = dissection};
 }
 
 }  // namespace armjig::kinovazed

@@ -33,6 +33,7 @@ cli::Device device() {
                      .run_plainly = replay::replay_plainly,
                      .write = replay::write},
           .draw_session = sessions::draw,
+          .dissection = dissection,
           .commands = {cli::add_i2c, cli::add_morap}};
 }
 

@@ -33,6 +33,7 @@ cli::Device device() {
           .program_check = programs::program_check(),
           .replay = {.run = replay::replay, .run_plainly = replay::replay_plainly},
           .draw_session = sessions::draw,
+          .dissection = dissection,
           .watch_rate = 100,
           .commands = {cli::add_plan, cli::add_run, cli::add_script}};
 }

@@ -51,7 +51,8 @@ bool is_event_free(std::string_view command) {
 
 }  // namespace
 
-ServerBench::ServerBench(Rig<SessionSource> rig) : PortBench{std::move(rig)} {
+ServerBench::ServerBench(Rig<SessionSource> rig, MayStop may_stop)
+    : PortBench{std::move(rig)}, may_stop_{may_stop} {
   clients_.emplace_back().port = port().make_port();
 }
 
@@ -78,7 +79,10 @@ ServerBench::Client& ServerBench::client() { return clients_[current_]; }
 Duration ServerBench::answer_time() const { return std::max<Duration>(2s, 20 * noise()); }
 Duration ServerBench::silence_time() const { return std::max<Duration>(250ms, 5 * noise()); }
 
-void ServerBench::forget_exchange() { exchange_.clear(); }
+void ServerBench::forget_exchange() {
+  exchange_.clear();
+  pass_over_stops();
+}
 
 std::string ServerBench::last_exchange() const {
   const auto judged = std::ranges::find(exchange_.rbegin(), exchange_.rend(),
@@ -104,6 +108,14 @@ void ServerBench::fail_by(std::string_view wanted, const Heard& heard) {
   fail_at(static_cast<std::size_t>(differs), behind(wanted), std::string{text});
 }
 
+/// Nothing that is a line came. What did come is the finding.
+void ServerBench::fail_by_no_line(std::string wanted, Duration time) {
+  const auto& rest = client().unfinished;
+  if (rest.empty()) return fail_by_silence(std::move(wanted), silence_of(time));
+  fail(wanted + " and CR LF",
+       fmt::format("'{}' and no LF within {:.0f} ms", printable(rest), milliseconds(time)));
+}
+
 std::string ServerBench::silence_of(Duration time) {
   if (client().has_ended) return "the end of the connection";
   return fmt::format("nothing within {:.0f} ms", milliseconds(time));
@@ -120,6 +132,7 @@ bool ServerBench::connect_again(Duration patience) {
   auto& one = client();
   one.port->close();
   one = Client{.port = std::move(one.port)};
+  is_seen_stopped_ = false;
   const auto deadline = one.port->now() + patience;
   for (;;) {
     const auto connected = one.port->connect(one.port->now() + answer_time());
@@ -252,7 +265,7 @@ std::optional<Heard> ServerBench::next_word(Duration within) {
 Heard ServerBench::expect(Event wanted, Duration within) {
   const auto word = next_word(within);
   if (!word) {
-    fail_by_silence(behind(to_string(wanted)), silence_of(within));
+    fail_by_no_line(behind(to_string(wanted)), within);
     return {now()};
   }
   if (!word->is(wanted)) {
@@ -282,20 +295,22 @@ void ServerBench::accept(std::string_view command) {
   }
 }
 
-Heard ServerBench::perform(std::string_view command, Event event, Duration within) {
+std::optional<Heard> ServerBench::event_of(std::string_view command, Event event, Duration within) {
   about(std::string{command});
   say(command);
-  const auto first = next_word(within);
-  if (!first) {
-    fail_by_silence(behind(to_string(event)), silence_of(within));
-    return {now()};
-  }
-  if (first->is(Event::kAccepted)) return expect(event, within);
-  if (!first->is(event)) {
-    fail_by(to_string(event), *first);
-  }
-  is_documented() ? pass_over_accepted() : void(expect(Event::kAccepted));
-  return *first;
+  auto word = next_word(within);
+  if (word && word->is(event))
+    is_documented() ? pass_over_accepted() : void(expect(Event::kAccepted));
+  if (word && word->is(Event::kAccepted)) word = next_word(within);
+  if (!word) fail_by_no_line(behind(to_string(event)), within);
+  return word;
+}
+
+Heard ServerBench::perform(std::string_view command, Event event, Duration within) {
+  const auto word = event_of(command, event, within);
+  if (!word) return {now()};
+  if (!word->is(event)) fail_by(to_string(event), *word);
+  return *word;
 }
 
 /// A shipped server sends it, in front of the event or at times behind it.
@@ -343,14 +358,14 @@ Heard ServerBench::await_beat() { return await_beat_behind(now()); }
 
 Heard ServerBench::await_beat_behind(Instant time) {
   const auto beat = next_beat(time, kBeatTime + noise());
-  if (!beat) fail_by_silence(behind("a heartbeat"), silence_of(kBeatTime));
+  if (!beat) fail_by_no_line(behind("a heartbeat"), kBeatTime);
   return beat.value_or(Heard{now()});
 }
 
 void ServerBench::expect_beat(int flags) {
   const auto wanted = fmt::format("Heartbeat:{}", flags);
   const auto beat = next_beat(now() + kBeatIsOld, kBeatTime + kBeatIsOld + noise());
-  if (!beat) return fail_by_silence(behind(wanted), silence_of(kBeatTime));
+  if (!beat) return fail_by_no_line(behind(wanted), kBeatTime);
   if (beat->raw != wanted + "\r\n") fail_by(wanted, *beat);
 }
 
@@ -368,17 +383,20 @@ void ServerBench::wait_until_before_beat(Duration time) {
 // The server and its machine.
 
 void ServerBench::touch(std::string_view input, std::int64_t value) {
-  if (is_deaf() || port().touch(input, value)) return;
+  if (is_deaf() || reach(input, value)) return;
   skip(fmt::format("needs a hand at the server, for {}", input));
 }
 
-void ServerBench::spoil(Recovery recovery) {
+bool ServerBench::can_restart() {
+  // As it is anyway; it shows whether the server is an emulated one.
+  return hand().has("restart") || port().touch("arm.fail.arm_open", 0);
+}
+
+void ServerBench::spoil() {
   if (is_deaf()) return;
-  // As it is anyway; it shows whether there is a hand.
-  const bool has_hand = port().touch("arm.fail.arm_open", 0);
-  is_spoiled_ = has_hand || recovery == Recovery::kBySupervisor;
+  is_spoiled_ = can_restart();
   if (!is_spoiled_) {
-    skip("hangs the server: needs somebody who can end and start it, for no client can");
+    skip("ends or hangs the server: --restart has to bring it back, for no client can");
   }
 }
 
@@ -405,6 +423,18 @@ bool ServerBench::stop_all() {
   return false;
 }
 
+/// The beat of an arm that somebody uses, and that may not be stopped; none if it may be, for it
+/// is stopped, or allowed. Nothing is sent. A server that says nothing counts as in use.
+std::optional<Heard> ServerBench::beat_in_use() {
+  if (may_stop_ == MayStop::kYes || is_seen_stopped_) return std::nullopt;
+  const auto beat = next_beat(now(), kBeatTime + noise());
+  if (!beat) return Heard{now()};
+  const auto* const heartbeat = std::get_if<Heartbeat>(&beat->message);
+  is_seen_stopped_ =
+      heartbeat != nullptr && heartbeat->flags == beat_of(State::kEmergencyStopped).flags;
+  return is_seen_stopped_ ? std::nullopt : beat;
+}
+
 /// What clients have said while they waited is carried out when the first one leaves, so it does.
 void ServerBench::drop_others() {
   current_ = 0;
@@ -419,11 +449,18 @@ bool ServerBench::is_alive() {
   if (std::exchange(is_spoiled_, false)) restart();
   const auto& one = client();
   if ((!one.is_connected || one.has_ended) && !connect_again(kRestartTime)) return false;
-  return stop_all();
+  if (const auto beat = beat_in_use()) {
+    if (!beat->raw.empty()) return true;
+  } else if (stop_all()) {
+    return true;
+  }
+  if (!client().unfinished.empty()) fail_by_no_line("Accepted (EStop)", answer_time());
+  return false;
 }
 
 void ServerBench::measure_noise() {
   constexpr int kSamples = 20;
+  if (beat_in_use()) return;
   for (int i = 0; i < kSamples && !client().has_ended; ++i) {
     port().pause(std::chrono::milliseconds{1 + i});
     const auto asked = now();
@@ -435,7 +472,7 @@ void ServerBench::measure_noise() {
 }
 
 void ServerBench::restart() {
-  const bool has_hand = port().touch("restart", 1);
+  const bool has_hand = reach("restart", 1);
   if (!has_hand && start_ == kFresh) return skip("needs somebody who can start the server anew");
   port().pause(100ms);
   client().has_ended = true;
@@ -444,7 +481,18 @@ void ServerBench::restart() {
 
 /// For a server that does not stop.
 bool ServerBench::start_anew() {
-  return port().touch("restart", 1) && connect_again(kRestartTime) && stop_all();
+  return reach("restart", 1) && connect_again(kRestartTime) && stop_all();
+}
+
+/// An arm that was stopped soon after it was folded may end folded once more; EStop is the way out.
+void ServerBench::initialize() {
+  const auto event = event_of("Initialize", Event::kInitialized, kMotionTime);
+  if (!event || event->is(Event::kInitialized)) return;
+  if (!event->is(Event::kRetracted) || !stop_all()) {
+    return fail_by(to_string(Event::kInitialized), *event);
+  }
+  accept("QuitEStop");
+  perform("Initialize", Event::kInitialized);
 }
 
 void ServerBench::bring_to(std::size_t start) {
@@ -456,14 +504,18 @@ void ServerBench::bring_to(std::size_t start) {
     if (!connect_again(kRestartTime)) return fail("a connection", "it is refused");
   }
   if (start_ == kFresh || is_over()) return;
+  if (const auto beat = beat_in_use()) {
+    return skip(fmt::format("the arm is in use ({}), and needs --allow state to be stopped",
+                            beat->raw.empty() ? "no beat comes" : beat->text()));
+  }
   if (!stop_all() && !start_anew()) {
-    return fail_by_silence("Accepted (EStop)", silence_of(answer_time()));
+    return fail_by_no_line("Accepted (EStop)", answer_time());
   }
   if (start_ == kStopped) return;
   accept("QuitEStop");
   if (start_ == kOff) return;
   if (mode_said_) pause(*mode_said_ + kBetweenModes - now());
-  perform("Initialize", Event::kInitialized);
+  initialize();
   if (start_ == kSteering) perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
   if (start_ == kFolded) perform("Retract", Event::kRetracted);
   about({});

@@ -45,7 +45,10 @@ struct Heard {
 /// at a time, the first one unless `as` says otherwise.
 class ServerBench final : public PortBench<SessionSource> {
  public:
-  explicit ServerBench(Rig<SessionSource> rig);
+  /// Whether an arm that is in use may be stopped: who only looks must not.
+  enum class MayStop : std::uint8_t { kYes, kNo };
+
+  explicit ServerBench(Rig<SessionSource> rig, MayStop may_stop = MayStop::kYes);
   ~ServerBench() override;
 
   [[nodiscard]] bool is_documented() const noexcept {
@@ -56,6 +59,7 @@ class ServerBench final : public PortBench<SessionSource> {
   [[nodiscard]] Result<void> begin_session();
 
   [[nodiscard]] bool is_alive() override;
+  [[nodiscard]] bool can_restart() override;
   void bring_to(std::size_t start) override;
   void measure_noise() override;
   [[nodiscard]] Instant now() const override;
@@ -121,11 +125,7 @@ class ServerBench final : public PortBench<SessionSource> {
   void touch(std::string_view input, std::int64_t value);
   /// What follows ends the server, or leaves it as no client can put it right: it is started anew
   /// before the next case. Skips the case where nobody can do that.
-  enum class Recovery : std::uint8_t {
-    kBySupervisor,  ///< the process ends, and whoever runs it starts it again
-    kByHand,        ///< it lives on and serves nobody
-  };
-  void spoil(Recovery recovery);
+  void spoil();
   /// Whether the server answers EStop; no finding yet. What came before is passed over.
   [[nodiscard]] bool answers();
   /// Connects, once, and tells whether EStop is answered; no finding yet.
@@ -135,11 +135,14 @@ class ServerBench final : public PortBench<SessionSource> {
   [[nodiscard]] Duration answer_time() const;
   [[nodiscard]] Duration silence_time() const;
 
+  /// In which a server answers (kinovazed.time.answer).
+  static constexpr Duration kAnswerTime = std::chrono::milliseconds{500};
   /// Longer than any motion of any arm takes.
   static constexpr Duration kMotionTime = std::chrono::seconds{40};
 
  protected:
   void forget_exchange() override;
+  [[nodiscard]] Duration longest_answer() const noexcept override { return kAnswerTime; }
 
  private:
   struct Client {
@@ -166,12 +169,18 @@ class ServerBench final : public PortBench<SessionSource> {
   void take_line(std::string_view line);
   [[nodiscard]] std::optional<Heard> next_word(Duration within);
   void pass_over_accepted();
+  /// What comes besides Accepted; none: silence, which has failed.
+  [[nodiscard]] std::optional<Heard> event_of(std::string_view command, Event event,
+                                              Duration within);
   [[nodiscard]] std::optional<Heard> next_beat(Instant after, Duration within);
   [[nodiscard]] bool stop_all();
+  [[nodiscard]] std::optional<Heard> beat_in_use();
   void drop_others();
   void restart();
   [[nodiscard]] bool start_anew();
+  void initialize();
   void remember(std::string_view arrow, std::string_view text);
+  void fail_by_no_line(std::string wanted, Duration time);
   [[nodiscard]] std::string silence_of(Duration time);
 
   std::vector<Client> clients_;
@@ -180,6 +189,8 @@ class ServerBench final : public PortBench<SessionSource> {
   std::optional<Instant> mode_said_;
   Start start_ = kStopped;
   bool is_spoiled_ = false;
+  MayStop may_stop_;
+  bool is_seen_stopped_ = false;  ///< since it was connected
 };
 
 }  // namespace armjig::kinovazed::conformance

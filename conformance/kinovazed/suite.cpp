@@ -43,7 +43,9 @@ Suite suite() noexcept {
 }
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<SessionSource> rig, const RigOptions& how) {
-  auto bench = std::make_unique<ServerBench>(std::move(rig));
+  const bool may_stop = how.target.is_emulated() || how.permissions.allow(Hazard::kState);
+  auto bench = std::make_unique<ServerBench>(
+      std::move(rig), may_stop ? ServerBench::MayStop::kYes : ServerBench::MayStop::kNo);
   if (const auto begun = bench->begin_session(); !begun) {
     return problem(begun.error().code, how.target.text, "is the server running, with its arm?");
   }

@@ -20,6 +20,13 @@ void initialize_at_home(ServerBench& server) {
   server.expect_beat(5);
 }
 
+Duration time_of(ServerBench& server, std::string_view objective) {
+  const auto said = server.now();
+  const auto done = server.perform("RunObjective:" + std::string{objective}, Event::kObjectiveDone,
+                                   2 * ServerBench::kMotionTime);
+  return done.time - said;
+}
+
 void half_close(ServerBench& server) {
   server.say("EStop");
   server.finish_sending();

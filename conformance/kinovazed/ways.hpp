@@ -50,6 +50,9 @@ void initialize_afresh(ServerBench& server);
 /// Initializes again an arm that is there already, which a beat has to show.
 void initialize_at_home(ServerBench& server);
 
+/// How long an objective takes, from its command on. No message tells where the arm is; this does.
+[[nodiscard]] Duration time_of(ServerBench& server, std::string_view objective);
+
 /// Says a command and ends its sending: the answer comes, and the end.
 void half_close(ServerBench& server);
 

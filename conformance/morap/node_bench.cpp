@@ -23,6 +23,9 @@ constexpr Duration kMargin = 20us;
 /// Messages begin with the byte of the address.
 constexpr std::size_t kAddressSize = 1;
 
+/// So long a shaft may coast.
+constexpr Duration kRestTime = 5s;
+
 std::vector<std::byte> bytes_of(std::string_view hex) { return *from_hex(hex); }
 
 /// As the document has numbers, IEEE 754 with the low byte first; not as our codec has them.
@@ -251,13 +254,19 @@ void NodeBench::bring_to(std::size_t start) {
   if (start != kUncalibrated) prepare(kCalibrateZero);
 }
 
-/// A shaft that was driven before comes to rest. One with little friction coasts for long.
+/// A shaft that was driven before comes to rest. One with little friction coasts for a while.
 void NodeBench::rest() {
-  const auto deadline = now() + 30s;
-  float before = number(kReadAngle);
-  while (now() < deadline && !is_deaf()) {
+  const auto begin = now();
+  const float first = number(kReadAngle);
+  for (float before = first; !is_deaf();) {
     settle();
-    if (const float now = number(kReadAngle); std::exchange(before, now) == now) return;
+    const float angle = number(kReadAngle);
+    if (angle == before) return;
+    if (now() - begin >= kRestTime) {
+      return fail("a shaft that comes to rest within 5 s of its mode being taken away",
+                  fmt::format("it turned from {} to {} rad, and goes on", first, angle));
+    }
+    before = angle;
   }
 }
 

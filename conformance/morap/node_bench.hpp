@@ -35,6 +35,9 @@ class NodeBench final : public BusBench {
     bool is_real = false;          ///< the first of its bus that answers; its shaft turns
   };
   NodeBench(Rig<BusPort> rig, const Subject& subject);
+
+  /// So long a node may hold the clock (morap.bus.clock-before-read).
+  static constexpr Duration kLongestHold = std::chrono::milliseconds{5};
   NodeBench(const NodeBench&) = delete;
   NodeBench& operator=(const NodeBench&) = delete;
   ~NodeBench() override;
@@ -97,6 +100,9 @@ class NodeBench final : public BusBench {
   void turn(int counts) { touch("encoder", counts); }
   /// Only where nothing can be damaged: on an emulated node.
   void needs_emulation() { touch("adc", 0); }
+
+ protected:
+  [[nodiscard]] Duration longest_answer() const noexcept override { return kLongestHold; }
 
  private:
   void expect_read(Bytes actual, Bytes wanted);

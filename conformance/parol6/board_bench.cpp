@@ -4,8 +4,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <utility>
+#include <vector>
 
 #include "harness/core/hex.hpp"
 #include "harness/wire/parol6/dissector.hpp"
@@ -19,6 +21,9 @@ using namespace std::chrono_literals;
 
 /// Homing takes 31 s where the switches are near.
 constexpr Duration kHomingTime = 90s;
+/// So long an emergency stop may take to be released.
+constexpr Duration kReleaseTime = 200ms;
+constexpr std::string_view kLayout = "60 bytes FF FF FF 38 ... 01 02";
 
 const Field& telemetry_field(std::string_view name) {
   return *find_field(telemetry_fields(), name);
@@ -69,7 +74,11 @@ Duration BoardBench::silence_time() const { return std::max<Duration>(50ms, 5 * 
 
 std::optional<Answer> BoardBench::next_answer(Instant asked, Duration within) {
   const auto message = receive(within);
-  if (!message || !message->fault.empty()) return std::nullopt;
+  if (!message) return std::nullopt;
+  if (!message->fault.empty()) {
+    not_understood_ = fmt::format("{} ({})", to_hex_dump(message->raw), message->fault);
+    return std::nullopt;
+  }
   const auto raw = Bytes{message->raw}.first<kTelemetryFrameSize>();
   Answer answer{{decode_telemetry(body_of(raw))}, {}, asked, message->time};
   std::ranges::copy(raw, answer.raw.begin());
@@ -81,14 +90,21 @@ std::optional<Answer> BoardBench::next_answer(Instant asked, Duration within) {
 Answer BoardBench::ask(const CommandFrame& frame, Duration within) {
   pause(last_answered_ + 1ms - now());
   const auto asked = now();
+  not_understood_.clear();
   send(encode(frame));
   const auto answer = next_answer(asked, within);
   last_answered_ = now();
   if (!answer) {
+    fail_to_understand();
     fail_by_silence(behind("an answer"),
                     fmt::format("none within {:.0f} ms", milliseconds(within)));
   }
   return answer.value_or(Answer{});
+}
+
+/// A finding if something came that is no answer.
+void BoardBench::fail_to_understand() {
+  if (!not_understood_.empty()) fail(behind(kLayout), std::exchange(not_understood_, {}));
 }
 
 std::vector<Answer> BoardBench::ask_together(const std::vector<CommandFrame>& frames) {
@@ -120,8 +136,10 @@ Answer BoardBench::keep_asking(const CommandFrame& frame, Duration time) {
 }
 
 Answer BoardBench::expect_answer() {
+  not_understood_.clear();
   const auto answer = next_answer(now(), answer_time());
   if (!answer) {
+    fail_to_understand();
     fail(behind("an answer"), fmt::format("none within {:.0f} ms", milliseconds(answer_time())));
   }
   return answer.value_or(Answer{});
@@ -136,7 +154,7 @@ void BoardBench::expect_whole() {
   send(encode(idle()));
   const auto message = receive(answer_time());
   if (!message) return fail_by_silence("a telemetry frame", "silence");
-  if (!message->fault.empty()) fail("60 bytes FF FF FF 38 ... 01 02", message->fault);
+  if (!message->fault.empty()) fail(std::string{kLayout}, message->fault);
 }
 
 void BoardBench::expect_recovery(int most) {
@@ -183,12 +201,27 @@ void BoardBench::expect_between(const Answer& answer, std::string_view name, std
 bool BoardBench::is_alive() {
   constexpr int kMostTries = 12;
   drain(10ms);
+  not_understood_.clear();
   for (int i = 0; i < kMostTries && !error(); ++i) {
     send(encode(idle()));
     if (!next_answer(now(), i == 0 ? answer_time() : silence_time())) continue;
     drain(10ms);
     return true;
   }
+  if (not_understood_.empty() && !error()) {
+    // What never becomes a frame stays with who looks for frames.
+    std::vector<std::byte> bytes;
+    std::array<std::byte, kTelemetryFrameSize> buffer{};
+    send(encode(idle()));
+    for (const auto end = now() + answer_time(); bytes.size() < buffer.size() && now() < end;) {
+      const auto size = port().read(buffer, end);
+      if (!size) break;
+      bytes.insert(bytes.end(), buffer.begin(),
+                   buffer.begin() + static_cast<std::ptrdiff_t>(*size));
+    }
+    if (!bytes.empty()) not_understood_ = to_hex_dump(bytes);
+  }
+  fail_to_understand();
   return false;
 }
 
@@ -219,7 +252,7 @@ void BoardBench::spoil() {
 }
 
 void BoardBench::power_cycle() {
-  put_back_surroundings();
+  if (reach("in1", 0)) put_back_surroundings();
   touch("power", 1);
   pause(1s);
   origin_.reset();
@@ -242,10 +275,24 @@ void BoardBench::put_back_surroundings() {
   }
 }
 
-void BoardBench::enable() {
+Answer BoardBench::say_enable() {
   act(with_code(101));
   act(idle());
-  const auto answer = act(idle());
+  return act(idle());
+}
+
+void BoardBench::enable() {
+  auto answer = say_enable();
+  if (is_estop_pressed(answer)) {
+    if (!reach("estop", 1)) {
+      blame_rig("the emergency stop is pressed, or reads inverted");
+    } else {
+      pause(kReleaseTime);
+      answer = say_enable();
+      expect_true(!is_estop_pressed(answer), "an emergency stop that was released to read released",
+                  "it is pressed, or reads inverted");
+    }
+  }
   for (std::size_t j = 0; j < kJointCount; ++j) {
     expect(answer, fmt::format("speed.j{}", j + 1), 0);
   }
@@ -297,7 +344,11 @@ void BoardBench::home() {
           return is_homed(answer);
         },
         kHomingTime);
-    if (!finished) leave_open("not all joints are homed within 90 s; are arm and switches there?");
+    if (!finished && !error()) {
+      fail("all joints homed within 90 s",
+           sentence_of(telemetry_field("homed"), homing_log_.back().homed) +
+               "; are arm and switches there?");
+    }
     origin_ = kStandby;
     act(idle());
   }

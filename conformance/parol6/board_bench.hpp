@@ -119,10 +119,16 @@ class BoardBench final : public StreamBench {
   /// Longer than two passes of any board's loop.
   static constexpr Duration kPassTime = std::chrono::milliseconds{2};
 
+ protected:
+  /// It answers at 100 Hz before the next frame comes (parol6.frame.rate).
+  [[nodiscard]] Duration longest_answer() const noexcept override { return kFramePeriod; }
+
  private:
   [[nodiscard]] std::optional<Answer> next_answer(Instant asked, Duration within);
   void power_cycle();
   void put_back_surroundings();
+  void fail_to_understand();
+  Answer say_enable();
   void enable();
   void walk_back();
   void leave_switch();
@@ -132,6 +138,7 @@ class BoardBench final : public StreamBench {
   std::vector<Answer> homing_log_;
   std::optional<std::array<Steps, kJointCount>> origin_;  ///< where `kEnabled` cases begin
   Instant last_answered_{};
+  std::string not_understood_;  ///< what came last that is no answer, for people
   bool is_spoiled_ = false;
 };
 

@@ -47,8 +47,8 @@ void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, 
   const auto least = shortest * (1 - kClockError) / (interval + seconds(longest_loop(board))) - 1.0;
   const auto most = longest * (1 + kClockError) / interval + 1.0;
   const auto made = steps(stretch, joint) * (speed < 0 ? -1 : 1);
-  board.expect_true(
-      made >= least && made <= most,
+  board.expect_in_time(
+      {static_cast<double>(made), least, most, "steps"},
       fmt::format("j{} to make {:.0f} to {:.0f} steps {} at {} steps/s in {:.1f} ms", joint + 1,
                   std::ceil(least), most, speed < 0 ? "down" : "up", speed, longest * 1e3),
       fmt::format("{} steps", steps(stretch, joint)));

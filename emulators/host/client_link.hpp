@@ -76,11 +76,14 @@ struct PtyOptions {
 struct TcpOptions {
   std::string address = "127.0.0.1";  ///< to listen on, IPv4 or IPv6
   std::uint16_t port = 0;             ///< 0: any that is free
+  enum class Protocol : std::uint8_t { kPlain, kRfc2217 };
+  Protocol protocol = Protocol::kPlain;  ///< of a byte stream
 };
 
 /// Listens on TCP for one client at a time; a second one is closed at once. A client that only
-/// ended its sending still gets answers for a second, if no other comes. Problems: those of
-/// `listen_on_tcp`.
+/// ended its sending still gets answers for a second, if no other comes. With `kRfc2217` a client
+/// also gets a serial port to set (`telnet::ComPortServer`), which changes nothing for the device.
+/// Problems: those of `listen_on_tcp`.
 [[nodiscard]] Outcome<std::unique_ptr<ClientLink>> open_tcp_link(boost::asio::io_context& context,
                                                                  const TcpOptions& options,
                                                                  LinkEvents events);

@@ -158,10 +158,16 @@ class Host::LoopOnAsio final : public Loop {
     });
   }
 
+  /// A timer that is set and earlier will do, since a pump too many costs less than setting it anew
+  /// with each message.
   void pump_at(Wall::time_point due) {
+    if (is_timer_set_ && timer_.expiry() <= due) return;
+    is_timer_set_ = true;
     timer_.expires_at(due);
     timer_.async_wait([this](const error_code& error) {
-      if (!error) pump();
+      if (error) return;
+      is_timer_set_ = false;
+      pump();
     });
   }
 
@@ -177,6 +183,7 @@ class Host::LoopOnAsio final : public Loop {
   boost::asio::signal_set signals_;
   stream_descriptor waker_;  ///< of a device that is not emulated
   bool is_pump_posted_ = false;
+  bool is_timer_set_ = false;
 };
 
 Host::Host(std::unique_ptr<LoopOnAsio> loop) noexcept : loop_{std::move(loop)} {}

@@ -21,6 +21,7 @@ struct HostOptions {
 
   std::optional<PtyOptions> pty;
   std::optional<TcpOptions> tcp;
+  std::optional<TcpOptions> rfc2217;  ///< of a stream, a serial port over Telnet
   double speed = 1;  ///< virtual over wall time, `PacedClock::kSlowest` to `kFastest`
   OnSignal on_signal = OnSignal::kNothing;  ///< `kStop`: SIGINT and SIGTERM end `run`
   std::function<void(std::string_view line)> log = [](std::string_view /*line*/) {};

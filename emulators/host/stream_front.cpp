@@ -9,22 +9,23 @@ namespace {
 /// Clients whose bytes wait for a slow line are not read any further.
 constexpr std::size_t kMostUnread = 4096;
 
-/// A byte stream on up to two links. Answers go to the link that sent last.
+/// A byte stream on one link or several. Answers go to the link that sent last.
 class StreamFront final : public Front {
  public:
   StreamFront(Loop& loop, HostedStream& device) : loop_{loop}, device_{device} {}
 
   [[nodiscard]] Outcome<void> listen(const HostOptions& options) override {
-    if (!options.pty && !options.tcp) {
-      return problem(ErrorCode::kBadValue, "host", "a pseudo-terminal or a TCP port is needed");
-    }
     if (options.pty) {
       auto added = add(open_pty_link(loop_.context(), *options.pty, events()));
       if (!added) return added;
     }
-    if (options.tcp) {
-      auto added = add(open_tcp_link(loop_.context(), *options.tcp, events()));
+    for (const auto* place : {&options.tcp, &options.rfc2217}) {
+      if (!*place) continue;
+      auto added = add(open_tcp_link(loop_.context(), **place, events()));
       if (!added) return added;
+    }
+    if (links_.empty()) {
+      return problem(ErrorCode::kBadValue, "host", "a pseudo-terminal or a TCP port is needed");
     }
     // On its only link, a device that speaks first is heard.
     if (links_.size() == 1) listener_ = links_.front().get();

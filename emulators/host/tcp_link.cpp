@@ -3,9 +3,13 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <optional>
+#include <variant>
 
 #include "emulators/host/client_link.hpp"
+#include "emulators/host/outbox.hpp"
 #include "emulators/host/tcp_listener.hpp"
+#include "harness/wire/telnet/com_port.hpp"
 
 namespace armjig {
 namespace {
@@ -13,10 +17,17 @@ namespace {
 /// For answers to a client that has ended its sending.
 constexpr auto kLinger = std::chrono::seconds{1};
 
+/// What one client has said and not said yet, where the link speaks RFC 2217.
+struct TelnetClient {
+  telnet::Decoder decoder;
+  telnet::ComPortServer port;
+  Outbox held;  ///< messages for a client that has suspended them
+};
+
 class TcpLink final : public ClientLink {
  public:
-  TcpLink(boost::asio::io_context& context, LinkEvents events)
-      : linger_{context}, events_{std::move(events)} {}
+  TcpLink(boost::asio::io_context& context, TcpOptions::Protocol protocol, LinkEvents events)
+      : protocol_{protocol}, linger_{context}, events_{std::move(events)} {}
 
   [[nodiscard]] Outcome<void> listen(boost::asio::io_context& context, const TcpOptions& options) {
     return listen_on_tcp(
@@ -33,18 +44,26 @@ class TcpLink final : public ClientLink {
       ++statistics_.frames_dropped;
       return;
     }
-    client_->push(message);
-    client_->flush();
+    if (!telnet_) return pass(message);
+    std::vector<std::byte> escaped;
+    telnet::escape(message,
+                   [&](Bytes piece) { escaped.insert(escaped.end(), piece.begin(), piece.end()); });
+    telnet_->port.is_suspended() ? telnet_->held.push(escaped) : pass(escaped);
   }
   void read_on() override {
     if (client_) client_->read_on();
   }
 
-  [[nodiscard]] std::vector<std::string> targets() const override { return {listener_->target()}; }
+  [[nodiscard]] std::vector<std::string> targets() const override {
+    auto target = listener_->target();
+    if (protocol_ == TcpOptions::Protocol::kRfc2217) target.replace(0, 3, "rfc2217");
+    return {std::move(target)};
+  }
 
   [[nodiscard]] LinkStatistics statistics() const override {
     auto statistics = statistics_;
     if (client_) statistics.frames_dropped += client_->dropped();
+    if (telnet_) statistics.frames_dropped += telnet_->held.dropped();
     return statistics;
   }
 
@@ -61,9 +80,41 @@ class TcpLink final : public ClientLink {
     client_ = std::move(client);
     is_at_end_ = false;
     client_->start({.wants_bytes = events_.wants_bytes,
-                    .on_bytes = [this](Bytes bytes) { events_.on_bytes(*this, bytes); },
+                    .on_bytes = [this](Bytes bytes) { receive(bytes); },
                     .on_end = [this](TcpConnection::End end) { on_end(end); }},
                    statistics_);
+    if (protocol_ == TcpOptions::Protocol::kPlain) return;
+    telnet_.emplace();
+    pass(telnet_->port.begin());
+  }
+
+  /// Hands over what is as it goes over the connection.
+  void pass(Bytes bytes) {
+    if (bytes.empty()) return;
+    client_->push(bytes);
+    client_->flush();
+  }
+
+  void receive(Bytes bytes) {
+    if (!telnet_) return events_.on_bytes(*this, bytes);
+    while (telnet_ && !bytes.empty()) {
+      const auto step = telnet_->decoder.step(bytes);
+      bytes = bytes.subspan(step.used);
+      if (const auto* data = std::get_if<telnet::Data>(&step.found)) {
+        events_.on_bytes(*this, data->bytes);
+      } else if (const auto* negotiation = std::get_if<telnet::Negotiation>(&step.found)) {
+        pass(telnet_->port.on(*negotiation));
+      } else if (const auto* request = std::get_if<telnet::Subnegotiation>(&step.found)) {
+        pass(telnet_->port.on(*request));
+        if (!telnet_->port.is_suspended()) release();
+      }
+    }
+  }
+
+  /// What was held back goes.
+  void release() {
+    pass(telnet_->held.waiting());
+    telnet_->held.pop(telnet_->held.waiting().size());
   }
 
   /// Reads what the client sent before another one came; it may turn out to be gone. One that is
@@ -92,13 +143,19 @@ class TcpLink final : public ClientLink {
     statistics_.frames_dropped += client_->dropped();
     linger_.cancel();
     client_.reset();
+    if (!telnet_) return;
+    telnet_->held.clear();
+    statistics_.frames_dropped += telnet_->held.dropped();
+    telnet_.reset();
   }
 
+  TcpOptions::Protocol protocol_;
   boost::asio::steady_timer linger_;
   LinkEvents events_;
   std::unique_ptr<TcpListener> listener_;
   std::shared_ptr<TcpConnection> client_;
-  bool is_at_end_ = false;  ///< the client sends no more
+  std::optional<TelnetClient> telnet_;  ///< with `client_`, if the link speaks it
+  bool is_at_end_ = false;              ///< the client sends no more
   LinkStatistics statistics_;
 };
 
@@ -106,7 +163,7 @@ class TcpLink final : public ClientLink {
 
 Outcome<std::unique_ptr<ClientLink>> open_tcp_link(boost::asio::io_context& context,
                                                    const TcpOptions& options, LinkEvents events) {
-  auto link = std::make_unique<TcpLink>(context, std::move(events));
+  auto link = std::make_unique<TcpLink>(context, options.protocol, std::move(events));
   if (auto listening = link->listen(context, options); !listening) {
     return tl::unexpected{listening.error()};
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -18,6 +19,15 @@ using Json = nlohmann::ordered_json;
 std::string_view to_string(LinkKind kind) noexcept {
   constexpr std::array<std::string_view, 5> kNames{"stream", "session", "bus", "can", "events"};
   return kNames.at(static_cast<std::size_t>(kind));
+}
+
+std::uint64_t lost_before(const CaptureRecord& record) noexcept {
+  constexpr std::string_view kLost = R"("lost":)";
+  std::uint64_t lost = 0;
+  if (record.link->kind == LinkKind::kEvents || !record.details.starts_with(kLost)) return lost;
+  const auto number = record.details.substr(kLost.size());
+  (void)std::from_chars(number.data(), number.data() + number.size(), lost);
+  return lost;
 }
 
 Outcome<CaptureHeader> CaptureHeader::parse(std::string_view line, const std::string& where) {

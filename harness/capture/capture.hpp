@@ -46,6 +46,10 @@ struct CaptureRecord {
   std::string_view details;
 };
 
+/// How many bytes of that direction are missing before the record: `"lost":N` in its details. What
+/// came before it belongs to no message with it.
+[[nodiscard]] std::uint64_t lost_before(const CaptureRecord& record) noexcept;
+
 /// What a recording says of itself: the header line of a `golden-trace/1` file.
 struct CaptureHeader {
   std::string json;
@@ -82,7 +86,8 @@ class CaptureReader {
   virtual ~CaptureReader() = default;
 
   [[nodiscard]] const CaptureHeader& header() const noexcept { return header_; }
-  [[nodiscard]] virtual CaptureFormat format() const noexcept = 0;
+  /// What the file is, for people: `pcapng`, `golden-trace/1`, or what others write.
+  [[nodiscard]] virtual std::string_view format() const noexcept = 0;
   /// The next record; false at the end. After a problem nothing more can be read.
   [[nodiscard]] virtual Outcome<bool> next(CaptureRecord& record) = 0;
   /// What is missing or was not understood, when all is read; empty: nothing.
@@ -98,6 +103,19 @@ class CaptureReader {
  private:
   std::deque<CaptureLink> links_;
 };
+
+/// All that are left, one after the other. What `use` answers, an `Outcome<void>`, may end it.
+/// Problems: those of `use`, and of the file.
+template <class Use>
+[[nodiscard]] Outcome<void> for_each_record(CaptureReader& reader, Use use) {
+  CaptureRecord record;
+  Outcome<bool> has_record = true;
+  while ((has_record = reader.next(record)) && *has_record) {
+    if (auto used = use(record); !used) return used;
+  }
+  if (!has_record) return tl::unexpected{std::move(has_record.error())};
+  return {};
+}
 
 /// Turns records into the bytes of a file. Each call appends what is a whole file with all before.
 class CaptureWriter {

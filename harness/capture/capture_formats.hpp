@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "harness/capture/capture.hpp"
+#include "harness/capture/pcapng.hpp"
 
 /// What `CaptureReader::open` and `make_capture_writer` choose from.
 namespace armjig {
@@ -14,6 +15,32 @@ namespace armjig {
                                                                  const std::string& path);
 [[nodiscard]] Outcome<std::unique_ptr<CaptureReader>> open_packets(UserFile file,
                                                                    const std::string& path);
+
+/// Finds records in packets of link types that armjig does not write.
+class PacketDecoder {
+ public:
+  PacketDecoder() = default;
+  PacketDecoder(const PacketDecoder&) = delete;
+  PacketDecoder& operator=(const PacketDecoder&) = delete;
+  virtual ~PacketDecoder() = default;
+
+  [[nodiscard]] virtual bool knows(std::uint16_t link_type) const noexcept = 0;
+  virtual void take(const pcapng::Packet& packet, const pcapng::Interface& interface) = 0;
+  /// No packet comes any more.
+  virtual void finish() = 0;
+  /// The next record that is complete, with its time since 1970; false: none yet. It is valid until
+  /// the next call.
+  [[nodiscard]] virtual bool next(CaptureRecord& record) = 0;
+  /// Whose an I2C bus is that nobody describes; empty: nobody knows.
+  [[nodiscard]] virtual std::string bus_device() const = 0;
+  /// What was left out, in words; `name` is the file's.
+  [[nodiscard]] virtual std::string warning(const std::string& name) const = 0;
+};
+
+/// The same of packets that come from anywhere; `decoder` may be none.
+[[nodiscard]] Outcome<std::unique_ptr<CaptureReader>> open_packets(
+    std::unique_ptr<pcapng::Source> source, std::unique_ptr<PacketDecoder> decoder,
+    const std::string& path);
 [[nodiscard]] std::unique_ptr<CaptureWriter> make_line_writer();
 [[nodiscard]] std::unique_ptr<CaptureWriter> make_packet_writer();
 

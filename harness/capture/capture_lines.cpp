@@ -72,7 +72,7 @@ class LineCaptureReader final : public CaptureReader {
     return {};
   }
 
-  [[nodiscard]] CaptureFormat format() const noexcept override { return CaptureFormat::kLines; }
+  [[nodiscard]] std::string_view format() const noexcept override { return "golden-trace/1"; }
 
   Outcome<bool> next(CaptureRecord& record) override {
     while (true) {

@@ -199,17 +199,18 @@ struct UpperPdu {
 };
 
 std::optional<UpperPdu> parse_upper_pdu(Bytes data) {
-  UpperPdu pdu;
+  std::optional<UpperPdu> found{std::in_place};  // made where it is used: copies cost more than all
+  auto& pdu = *found;
   while (data.size() >= 4) {
     const auto tag = load_u16_be(data.first<2>());
     const std::size_t size = load_u16_be(data.subspan(2).first<2>());
     data = data.subspan(4);
-    if (size > data.size()) return std::nullopt;
+    if (size > data.size()) break;
     const auto value = data.first(size);
     data = data.subspan(size);
     if (tag == kEndOfTags) {
       pdu.bytes = data;
-      return pdu;
+      return found;
     }
     if (tag == kDissectorName) {
       pdu.dissector = text_of(value);
@@ -218,53 +219,105 @@ std::optional<UpperPdu> parse_upper_pdu(Bytes data) {
     if (tag == kSourcePort && size == 4) pdu.source = u32(value);
     if (tag == kDestinationPort && size == 4) pdu.destination = u32(value);
   }
-  return std::nullopt;
+  found.reset();
+  return found;
 }
 
 class PacketCaptureReader final : public CaptureReader {
  public:
-  PacketCaptureReader(UserFile file, const std::string& path)
-      : reader_{std::move(file), path}, path_{path} {}
+  PacketCaptureReader(std::unique_ptr<pcapng::Source> source,
+                      std::unique_ptr<PacketDecoder> decoder, std::string path)
+      : reader_{std::move(source)}, decoder_{std::move(decoder)}, path_{std::move(path)} {}
 
   /// Up to the first packet: only then is known what the header says.
   Outcome<void> read_header() {
-    const auto has_packet = reader_.next(packet_);
+    const auto has_packet = reader_->next(packet_);
     if (!has_packet) return tl::unexpected{has_packet.error()};
     has_packet_ = *has_packet;
-    auto header = CaptureHeader::parse(reader_.comment(), path_);
+    auto header = CaptureHeader::parse(reader_->comment(), path_);
     header_ = header ? *std::move(header) : foreign_header();
     return {};
   }
 
-  [[nodiscard]] CaptureFormat format() const noexcept override { return CaptureFormat::kPcapng; }
+  [[nodiscard]] std::string_view format() const noexcept override { return reader_->format(); }
 
   Outcome<bool> next(CaptureRecord& record) override {
     while (true) {
-      if (!std::exchange(has_packet_, false)) {
-        const auto has_packet = reader_.next(packet_);
-        if (!has_packet || !*has_packet) return has_packet;
+      if (std::exchange(is_ahead_, false)) {
+        record = ahead_;
+        record.time = since_start(ahead_.time);
+        return true;
       }
-      if (take(record)) return true;
+      if (decoder_ && decoder_->next(record)) {
+        record.time = since_start(record.time);
+        return true;
+      }
+      if (has_ended_) return end();
+      if (!std::exchange(has_packet_, false)) read_packet();
+      if (!has_ended_ && !decode_packet() && take(record)) return true;
+      has_packet_ = false;
     }
   }
 
   [[nodiscard]] std::string warning() const override {
-    auto text = reader_.warning();
-    if (not_understood_ == 0) return text;
-    if (!text.empty()) text += '\n';
-    return text + fmt::format("{}: {} packets were passed over: of no link that is known here",
-                              path_, not_understood_);
+    auto text = reader_->warning();
+    const auto add = [&text](const std::string& line) {
+      if (!text.empty() && !line.empty()) text += '\n';
+      text += line;
+    };
+    if (decoder_) add(decoder_->warning(path_));
+    if (not_understood_ > 0) {
+      add(fmt::format("{}: {} packets were passed over: of no link that is known here", path_,
+                      not_understood_));
+    }
+    return text;
   }
 
  private:
+  void read_packet() {
+    auto has_packet = reader_->next(packet_);
+    if (!has_packet) problem_ = std::move(has_packet.error());
+    has_ended_ = !has_packet || !*has_packet;
+    if (has_ended_ && decoder_) decoder_->finish();
+  }
+
+  Outcome<bool> end() const {
+    if (problem_) return tl::unexpected{*problem_};
+    return false;
+  }
+
+  /// Whether the packet is the decoder's.
+  bool decode_packet() {
+    const auto& interface = reader_->interfaces()[packet_.interface];
+    if (!decoder_ || !decoder_->knows(interface.link_type)) return false;
+    decoder_->take(packet_, interface);
+    return true;
+  }
+
+  /// The device of the first record, if it is the decoder who finds it.
+  std::string device_ahead() {
+    while (has_packet_ && decode_packet()) {
+      is_ahead_ = decoder_->next(ahead_);
+      has_packet_ = false;
+      if (is_ahead_) break;
+      read_packet();
+      has_packet_ = !has_ended_;
+    }
+    if (!is_ahead_ && has_ended_ && decoder_) is_ahead_ = decoder_->next(ahead_);
+    return is_ahead_ ? ahead_.link->device : std::string{};
+  }
+
   /// What the interfaces say, for a file that somebody else wrote, or put together.
   CaptureHeader foreign_header() {
     CaptureHeader header;
-    for (std::size_t i = 0; i < reader_.interfaces().size() && header.device.empty(); ++i) {
-      header.device = own_link_of(i).device;
-    }
-    if (header.device.empty()) header.device = "unknown";
     header.epoch_ns = std::max(std::int64_t{0}, packet_.time_ns);
+    for (std::size_t i = 0; i < reader_->interfaces().size() && header.device.empty(); ++i) {
+      const bool is_bus = reader_->interfaces()[i].link_type == pcapng::kLinkI2c;
+      header.device = own_link_of(i).device;
+      if (header.device.empty() && is_bus && decoder_) header.device = decoder_->bus_device();
+    }
+    if (const auto ahead = device_ahead(); header.device.empty()) header.device = ahead;
+    if (header.device.empty()) header.device = "unknown";
     Json json{{"format", "golden-trace/1"}, {"device", header.device}};
     if (header.epoch_ns > 0) json["epoch_ns"] = header.epoch_ns;
     header.json = json.dump();
@@ -273,7 +326,7 @@ class PacketCaptureReader final : public CaptureReader {
 
   /// As the comment of the interface has it; the name is empty if it has nothing.
   [[nodiscard]] CaptureLink own_link_of(std::size_t interface) const {
-    const auto& comment = reader_.interfaces()[interface].comment;
+    const auto& comment = reader_->interfaces()[interface].comment;
     if (is_too_deep(comment)) return {};
     const auto json = Json::parse(comment, nullptr, /*allow_exceptions=*/false);
     const auto text = [&json](const char* key) {
@@ -293,7 +346,10 @@ class PacketCaptureReader final : public CaptureReader {
   [[nodiscard]] CaptureLink guessed_link(const pcapng::Interface& interface,
                                          const std::optional<UpperPdu>& pdu) const {
     CaptureLink link{interface.name, header_.device, LinkKind::kStream};
-    if (interface.link_type == pcapng::kLinkI2c) link.kind = LinkKind::kBus;
+    if (interface.link_type == pcapng::kLinkI2c) {
+      link.kind = LinkKind::kBus;
+      if (decoder_ && !decoder_->bus_device().empty()) link.device = decoder_->bus_device();
+    }
     if (interface.link_type == pcapng::kLinkCan) link.kind = LinkKind::kCan;
     if (pdu) {
       link.device = pdu->dissector;
@@ -309,7 +365,7 @@ class PacketCaptureReader final : public CaptureReader {
     auto& known = links_[packet_.interface];
     if (known == nullptr) {
       auto own = own_link_of(packet_.interface);
-      if (own.name.empty()) own = guessed_link(reader_.interfaces()[packet_.interface], pdu);
+      if (own.name.empty()) own = guessed_link(reader_->interfaces()[packet_.interface], pdu);
       known = &link(own.name, own.device, own.kind);
     }
     return *known;
@@ -317,13 +373,17 @@ class PacketCaptureReader final : public CaptureReader {
 
   /// Whether the packet is a record.
   bool take(CaptureRecord& record) {
-    const auto type = reader_.interfaces()[packet_.interface].link_type;
-    std::optional<UpperPdu> pdu;
-    if (type == pcapng::kLinkUpperPdu) pdu = parse_upper_pdu(packet_.data);
+    const auto type = reader_->interfaces()[packet_.interface].link_type;
+    const auto pdu =
+        type == pcapng::kLinkUpperPdu ? parse_upper_pdu(packet_.data) : std::optional<UpperPdu>{};
     const bool is_known = pdu ||
                           (type == pcapng::kLinkI2c && packet_.data.size() >= kBusHeaderBytes) ||
                           (type == pcapng::kLinkCan && packet_.data.size() >= kCanHeaderBytes);
     if (!is_known) return pass_over();
+    // What happened on a bus beside its transfers, as the format has it.
+    constexpr std::byte kBusEvent{0x80};
+    const bool is_bus = type == pcapng::kLinkI2c;
+    if (is_bus && (packet_.data.front() & kBusEvent) != std::byte{}) return false;
     const auto& link = link_of_packet(pdu);
     record = {};
     record.time = time_of_packet();
@@ -332,7 +392,8 @@ class PacketCaptureReader final : public CaptureReader {
         packet_.flow == Flow::kInbound ? Direction::kFromDevice : Direction::kToDevice;
     if (pdu && link.kind == LinkKind::kEvents) return take_event(record, text_of(pdu->bytes));
     if (pdu) {
-      record.bytes = pdu->bytes;
+      // Copying both halves of `pdu->bytes`, which were just written, would stall the processor.
+      record.bytes = packet_.data.last(pdu->bytes.size());
       const bool is_to_device = record.direction == Direction::kToDevice;
       record.id = (is_to_device ? pdu->source : pdu->destination).value_or(0);
     } else if (type == pcapng::kLinkI2c) {
@@ -344,7 +405,7 @@ class PacketCaptureReader final : public CaptureReader {
       if (size < record.bytes.size()) record.bytes = record.bytes.first(size);
     }
     if (has_details_ && details_time_ == packet_.time_ns &&
-        details_of_ == reader_.interfaces()[packet_.interface].name) {
+        details_of_ == reader_->interfaces()[packet_.interface].name) {
       has_details_ = false;
       record.details = details_;
     }
@@ -388,14 +449,23 @@ class PacketCaptureReader final : public CaptureReader {
     return false;
   }
 
-  Instant time_of_packet() {
-    std::int64_t since_start = 0;
-    if (__builtin_sub_overflow(packet_.time_ns, header_.epoch_ns, &since_start)) since_start = 0;
-    last_ = std::max(last_, at(Duration{since_start}));
+  Instant time_of_packet() { return since_start(at(Duration{packet_.time_ns})); }
+
+  Instant since_start(Instant time) {
+    std::int64_t since = 0;
+    if (__builtin_sub_overflow(time.time_since_epoch().count(), header_.epoch_ns, &since)) {
+      since = 0;
+    }
+    last_ = std::max(last_, at(Duration{since}));
     return last_;
   }
 
-  pcapng::Reader reader_;
+  std::unique_ptr<pcapng::Source> reader_;
+  std::unique_ptr<PacketDecoder> decoder_;  ///< none: other link types are passed over
+  CaptureRecord ahead_;                     ///< read for the header
+  bool is_ahead_ = false;
+  bool has_ended_ = false;
+  std::optional<Problem> problem_;
   std::string path_;
   pcapng::Packet packet_;
   bool has_packet_ = false;
@@ -411,7 +481,16 @@ class PacketCaptureReader final : public CaptureReader {
 }  // namespace
 
 Outcome<std::unique_ptr<CaptureReader>> open_packets(UserFile file, const std::string& path) {
-  return begin_reading<PacketCaptureReader>(std::move(file), path);
+  return open_packets(std::make_unique<pcapng::Reader>(std::move(file), path), nullptr, path);
+}
+
+Outcome<std::unique_ptr<CaptureReader>> open_packets(std::unique_ptr<pcapng::Source> source,
+                                                     std::unique_ptr<PacketDecoder> decoder,
+                                                     const std::string& path) {
+  auto reader = std::make_unique<PacketCaptureReader>(std::move(source), std::move(decoder), path);
+  auto begun = reader->read_header();
+  if (!begun) return tl::unexpected{std::move(begun.error())};
+  return reader;
 }
 
 std::unique_ptr<CaptureWriter> make_packet_writer() {

@@ -27,6 +27,7 @@ template <class Json>
 }
 
 /// The same on one line, without a line end.
+void append_json(std::string& out, const Message& message);
 [[nodiscard]] std::string to_json(const Message& message);
 
 }  // namespace armjig

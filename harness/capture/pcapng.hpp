@@ -28,8 +28,9 @@ struct Interface {
   std::uint16_t link_type{};
   std::string name;
   std::string comment;
-  std::uint8_t resolution = 6;  ///< as the format has it: 10^-n s, with the high bit set 2^-n s
-  std::int64_t offset_s = 0;    ///< added to all times
+  std::uint8_t resolution = 6;   ///< as the format has it: 10^-n s, with the high bit set 2^-n s
+  std::int64_t offset_s = 0;     ///< added to all times
+  bool is_little_endian = true;  ///< the machine that captured it
 };
 
 /// One packet. What it refers to is valid until the next one is read.
@@ -39,6 +40,27 @@ struct Packet {
   Flow flow{};
   std::size_t original_size{};  ///< more than `data` if it was cut when it was captured
   Bytes data;
+};
+
+/// Packets from wherever they come, one by one.
+class Source {
+ public:
+  Source() = default;
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+  virtual ~Source() = default;
+
+  /// What the file is, for people.
+  [[nodiscard]] virtual std::string_view format() const noexcept = 0;
+  /// The next packet; false at the end. After a problem nothing more can be read.
+  [[nodiscard]] virtual Outcome<bool> next(Packet& packet) = 0;
+  /// All so far.
+  [[nodiscard]] virtual const std::vector<Interface>& interfaces() const noexcept = 0;
+  /// Complete when `next` has returned.
+  [[nodiscard]] virtual const std::string& comment() const noexcept = 0;
+  /// What a reader should know and is no problem, such as that a file ends too early; empty:
+  /// nothing.
+  [[nodiscard]] virtual const std::string& warning() const noexcept = 0;
 };
 
 /// A section, with `comment` in as many options as it needs.
@@ -52,22 +74,22 @@ void append_packet(std::string& out, const Packet& packet);
 
 /// Reads a file from its beginning to its end, in memory that does not grow with it. Sections of
 /// either byte order, and blocks that nobody knows, are read over.
-class Reader {
+class Reader final : public Source {
  public:
   /// `name` is for messages.
   Reader(UserFile file, std::string name);
 
-  /// The next packet; false at the end. Problems: `kMalformed`, with the offset of the block, and
-  /// those of the file. After one nothing more can be read.
-  [[nodiscard]] Outcome<bool> next(Packet& packet);
+  [[nodiscard]] std::string_view format() const noexcept override { return "pcapng"; }
+  /// Problems: `kMalformed`, with the offset of the block, and those of the file.
+  [[nodiscard]] Outcome<bool> next(Packet& packet) override;
 
   /// Of all sections so far, one after the other.
-  [[nodiscard]] const std::vector<Interface>& interfaces() const noexcept { return interfaces_; }
-  /// The comments of the first section; complete when `next` has returned.
-  [[nodiscard]] const std::string& comment() const noexcept { return comment_; }
-  /// What a reader should know of the file and is no problem, such as that it ends within a block;
-  /// empty: nothing.
-  [[nodiscard]] const std::string& warning() const noexcept { return warning_; }
+  [[nodiscard]] const std::vector<Interface>& interfaces() const noexcept override {
+    return interfaces_;
+  }
+  /// The comments of the first section.
+  [[nodiscard]] const std::string& comment() const noexcept override { return comment_; }
+  [[nodiscard]] const std::string& warning() const noexcept override { return warning_; }
 
  private:
   [[nodiscard]] Outcome<bool> fill(std::size_t size);

@@ -42,7 +42,8 @@ struct Slice {
 [[nodiscard]] Slice slice_of(std::span<const RoundTrip> trips);
 
 /// Two targets in alternated slices, so that what comes over the machine comes over both: the
-/// intervals are those of the mean difference of neighbours. Below ten pairs it is unclear.
+/// intervals are those of the differences of neighbours, of their median for the figure `median`,
+/// of their mean for `mean`. Below ten pairs it is unclear.
 [[nodiscard]] LatencyComparison compare_alternated(std::span<const Slice> first,
                                                    std::span<const Slice> second,
                                                    std::uint64_t seed);

@@ -5,11 +5,13 @@
 
 #include <array>
 #include <chrono>
-#include <deque>
 #include <optional>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "harness/drive/kinovazed/drive.hpp"
+#include "harness/latency/trip_book.hpp"
 #include "harness/timing/latency_histogram.hpp"
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/kinovazed/line_splitter.hpp"
@@ -20,15 +22,19 @@ namespace {
 
 constexpr double kSecond = 1e9;
 
-/// Commands in a recording, until they are done. The event that says so may come before Accepted.
+/// Commands until they are done. The event that says so may come before Accepted.
 class Commands {
  public:
-  void request(Instant now, Verb verb) { waiting_.push_back({verb, now}); }
+  void request(Instant now, Verb verb) {
+    if (asked_ - replied_ == waiting_.size()) ++replied_;  // the oldest is forgotten
+    at(asked_++) = {verb, now};
+  }
+
+  void forget() noexcept { replied_ = asked_; }
 
   void reply(Event reply) {
-    if (waiting_.empty()) return;
-    const auto first = waiting_.front();
-    waiting_.pop_front();
+    if (replied_ == asked_) return;
+    const auto first = at(replied_++);
     if (reply == Event::kAccepted && !first.is_done) begun_[index(first.verb)] = first.sent;
   }
 
@@ -36,27 +42,27 @@ class Commands {
     const auto ends = [event](Verb verb) { return drive::completion_of(verb) == event; };
     for (std::size_t i = 0; i < kAnsweredVerbs; ++i) {
       if (!ends(static_cast<Verb>(i)) || !begun_[i]) continue;
-      times_[i].push_back(now - *begun_[i]);
+      times_[i].record(now - *begun_[i]);
       begun_[i].reset();
       return;
     }
-    for (auto& one : waiting_) {
+    for (auto i = replied_; i != asked_; ++i) {
+      auto& one = at(i);
       if (one.is_done || !ends(one.verb)) continue;
       one.is_done = true;
-      times_[index(one.verb)].push_back(now - one.sent);
+      times_[index(one.verb)].record(now - one.sent);
       return;
     }
   }
 
   void tell(std::vector<Figure>& figures) const {
     for (std::size_t i = 0; i < kAnsweredVerbs; ++i) {
-      if (times_[i].empty()) continue;
-      LatencyHistogram histogram;
-      for (const auto time : times_[i]) histogram.record(time);
+      const auto& histogram = times_[i];
+      if (histogram.count() == 0) continue;
       const auto verb = static_cast<Verb>(i);
       const auto name = fmt::format("{} to {}", to_string(verb),
                                     to_string(drive::completion_of(verb).value_or(Event{})));
-      const auto basis = fmt::format("{} of them, from command to event", times_[i].size());
+      const auto basis = fmt::format("{} of them, from command to event", histogram.count());
       const auto add = [&](const char* which, Duration time) {
         figures.push_back({fmt::format("{}, {}", name, which),
                            static_cast<double>(time.count()) / 1e6, "ms", basis});
@@ -73,19 +79,35 @@ class Commands {
     bool is_done = false;
   };
   static constexpr std::size_t index(Verb verb) noexcept { return static_cast<std::size_t>(verb); }
+  Waiting& at(std::size_t number) noexcept { return waiting_[number % waiting_.size()]; }
 
-  std::deque<Waiting> waiting_;  ///< for their reply
+  std::array<Waiting, TripBook::kMostPending> waiting_{};  ///< for their reply; a ring
+  std::size_t asked_ = 0;
+  std::size_t replied_ = 0;
   std::array<std::optional<Instant>, kAnsweredVerbs> begun_;
-  std::array<std::vector<Duration>, kAnsweredVerbs> times_;
+  std::array<LatencyHistogram, kAnsweredVerbs> times_;
 };
 
 class ReplyProbe final : public Probe {
  public:
-  explicit ReplyProbe(std::string_view exchange) noexcept : exchange_{exchange} {}
+  explicit ReplyProbe(std::string_view exchange) : exchange_{exchange} { ask({Verb::kUnfreeze}); }
 
   std::string_view exchange() const noexcept override { return exchange_; }
   Hazard hazard() const noexcept override { return Hazard::kState; }
-  Messages request() override { return {&message_, 1}; }
+  Messages request() override { return {&messages_[asking_ % verbs_.size()], 1}; }
+
+  void leaves(Instant now) override { asked_.request(now, verbs_[asking_++ % verbs_.size()]); }
+  void lost() override { asked_.forget(); }
+
+  Outcome<void> choose(std::string_view name) override {
+    if (name != "freeze") {
+      return problem(ErrorCode::kBadValue, fmt::format("--exchange {}", name),
+                     "besides Unfreeze there is: freeze, which is Freeze and Unfreeze in turn");
+    }
+    exchange_ = "Freeze and Unfreeze, in turn, to Accepted or Rejected";
+    ask({Verb::kFreeze, Verb::kUnfreeze});
+    return {};
+  }
 
   std::size_t requested(Instant now, Bytes bytes) override {
     std::size_t requests = 0;
@@ -144,12 +166,22 @@ class ReplyProbe final : public Probe {
     last_beat_ = now;
   }
 
+  void ask(std::vector<Verb> verbs) {
+    verbs_ = std::move(verbs);
+    lines_.clear();
+    for (const auto verb : verbs_) lines_.push_back(encode(Command{.verb = verb}));
+    messages_.clear();
+    for (const auto& line : lines_) messages_.push_back(line.bytes());
+  }
+
   std::string_view exchange_;
-  EncodedLine line_ = encode(Command{.verb = Verb::kUnfreeze});
-  Bytes message_ = line_.bytes();
+  std::vector<Verb> verbs_;  ///< in turn
+  std::vector<EncodedLine> lines_;
+  std::vector<Bytes> messages_;
+  std::size_t asking_ = 0;
   LineSplitter splitter_;
   LineSplitter commands_;
-  Commands asked_;  ///< in a recording
+  Commands asked_;
   Instant first_beat_{};
   std::optional<Instant> last_beat_;
   LatencyHistogram periods_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <string_view>
 
@@ -105,6 +106,38 @@ ReportSection round_trips_of(const LatencyRun& run) {
   return section;
 }
 
+Instant start_of(const Measured& measured) {
+  return measured.trips.empty() ? Instant{} : measured.trips.front().sent;
+}
+
+double seconds_after(Instant start, Instant time) {
+  return std::chrono::duration<double>{time - start}.count();
+}
+
+/// Of both ends apart: how late requests left, and how late answers were read.
+std::vector<Plot> jitter_of(const Measured& measured) {
+  const auto plot_of = [&measured](std::string title, std::string axis, auto delay_of) {
+    Plot plot{.title = std::move(title), .x = {"time / s"}, .y = {std::move(axis)}};
+    auto& points = plot.series.emplace_back().points;
+    for (const auto& trip : measured.trips) {
+      if (const std::optional<Duration> delay = delay_of(trip)) {
+        points.push_back({seconds_after(start_of(measured), trip.sent), as_milliseconds(*delay)});
+      }
+    }
+    return plot;
+  };
+  std::vector<Plot> plots;
+  if (measured.lateness.count() > 0) {
+    plots.push_back(plot_of("Sending", "sent after the deadline / ms",
+                            [](const RoundTrip& trip) { return trip.late; }));
+  }
+  if (measured.delivery.count() > 0) {
+    plots.push_back(plot_of("Receiving", "read after the kernel had it / ms",
+                            [](const RoundTrip& trip) { return trip.delivery; }));
+  }
+  return plots;
+}
+
 ReportSection shares_section_of(const LatencyRun& run) {
   ReportSection section{.title = "Host, link or device",
                         .table = {.columns = {"share", "50 %", "99 %", "rests on"}}};
@@ -112,6 +145,7 @@ ReportSection shares_section_of(const LatencyRun& run) {
     section.table.rows.push_back(
         {share.of, text_of(share.median), text_of(share.p99), share.rests_on});
   }
+  section.plots = jitter_of(run.measured);
   return section;
 }
 
@@ -156,17 +190,20 @@ std::string_view word_of(MeterEvent::Kind kind) {
   return kWords[static_cast<std::size_t>(kind)];
 }
 
-Instant start_of(const Measured& measured) {
-  return measured.trips.empty() ? Instant{} : measured.trips.front().sent;
-}
-
-double seconds_after(Instant start, Instant time) {
-  return std::chrono::duration<double>{time - start}.count();
+/// What plots call the table of the worst.
+std::string name_of_worst(const LatencyRun& run) {
+  auto name = run.name.empty() ? std::string{"worst"} : "worst-" + run.name;
+  const auto is_other = [](char letter) {
+    return std::isalnum(static_cast<unsigned char>(letter)) == 0;
+  };
+  std::ranges::replace_if(name, is_other, '-');
+  return name;
 }
 
 ReportSection worst_of(const LatencyRun& run) {
   ReportSection section{.title = "The worst",
-                        .table = {.columns = {"at", "round trip", "who", "last events / ms"}}};
+                        .table = {.columns = {"at", "round trip", "who", "last events / ms"},
+                                  .name = name_of_worst(run)}};
   for (const auto& outlier : run.measured.outliers) {
     std::string events;
     const auto first = outlier.event_count - std::min(outlier.event_count, kShownEvents);
@@ -219,20 +256,49 @@ Plot bars_of(const LatencyHistogram& histogram) {
   return plot;
 }
 
-Plot series_of(const Measured& measured) {
+Plot series_of(const LatencyRun& run) {
+  const auto& measured = run.measured;
   Plot plot{.title = "In the order of time", .x = {"time / s"}, .y = {"round trip / ms"}};
   Series all{.name = "all"};
   for (const auto& trip : measured.trips) {
     all.points.push_back(
         {seconds_after(start_of(measured), trip.sent), as_milliseconds(trip.duration)});
   }
-  Series worst{.name = "the worst", .shape = Shape::kDots};
+  Series worst{.name = "the worst", .shape = Shape::kDots, .opens = name_of_worst(run)};
   for (const auto& one : measured.outliers) {
     worst.points.push_back(
         {seconds_after(start_of(measured), one.trip.sent), as_milliseconds(one.trip.duration)});
   }
   plot.series = {std::move(all), std::move(worst)};
   return plot;
+}
+
+/// What the device's clock differs from the host's by, over the time between two requests.
+Duration usual_shift(const std::vector<RoundTrip>& trips) {
+  std::vector<Duration> shifts;
+  for (const auto& trip : trips) {
+    if (trip.shift) shifts.push_back(*trip.shift);
+  }
+  if (shifts.empty()) return {};
+  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
+  std::ranges::nth_element(shifts, middle);
+  return *middle;
+}
+
+/// How much later than usual the device took the request, by its own clock: since the last one
+/// whose answer was in time. None: its answers do not tell.
+std::optional<Duration> taken_late(const RoundTrip& trip, const Measured& measured) {
+  if (!trip.shift) return std::nullopt;
+  const auto& trips = measured.trips;
+  const auto usual = usual_shift(trips);
+  const auto median = measured.round_trips.percentile(50);
+  auto late = *trip.shift - usual;
+  auto one = std::ranges::lower_bound(trips, trip.sent, {}, &RoundTrip::sent);
+  while (one != trips.begin() && (--one)->duration - median > (trip.duration - median) / 4) {
+    if (!one->shift) return std::nullopt;
+    late += *one->shift - usual;
+  }
+  return late;
 }
 
 }  // namespace
@@ -268,6 +334,13 @@ std::vector<Share> shares_of(const LatencyRun& run) {
                       measured.lateness.percentile(99),
                       "the schedule's deadlines; not in the round trips as they were"});
   }
+  const bool has_sending = run.sending && run.sending->count() > 0;
+  const auto sending = has_sending ? run.sending->percentile(50) : Duration{};
+  if (has_sending) {
+    shares.push_back(
+        {"host, sending", sending, run.sending->percentile(99),
+         fmt::format("the kernel's time stamps of {} further requests", run.sending->count())});
+  }
   if (measured.delivery.count() > 0) {
     shares.push_back({"host, after receiving", measured.delivery.percentile(50),
                       measured.delivery.percentile(99),
@@ -276,7 +349,7 @@ std::vector<Share> shares_of(const LatencyRun& run) {
   auto rest = LatencyHistogram{};
   const auto wire = run.time_on_wire.value_or(Duration{});
   for (const auto& trip : measured.trips) {
-    rest.record(trip.duration - trip.delivery.value_or(Duration{}) - wire);
+    rest.record(trip.duration - sending - trip.delivery.value_or(Duration{}) - wire);
   }
   if (measured.trips.empty()) rest = measured.round_trips;
   if (run.time_on_wire) {
@@ -294,7 +367,6 @@ std::vector<Share> shares_of(const LatencyRun& run) {
 
 std::string blame_of(const Outlier& outlier, const LatencyRun& run) {
   const auto& trip = outlier.trip;
-  if (run.is_virtual()) return "device or link: in virtual time no host is late";
   const auto end = trip.sent + trip.duration;
   const auto slept =
       run.witness ? overslept_within(run.witness->oversleeps, trip.sent, end) : Duration{};
@@ -305,6 +377,14 @@ std::string blame_of(const Outlier& outlier, const LatencyRun& run) {
   if (trip.delivery && *trip.delivery * 2 > excess) {
     return fmt::format("host: the kernel had it {} earlier", text_of(*trip.delivery));
   }
+  if (const auto taken = taken_late(trip, run.measured)) {
+    if (*taken * 2 > excess) {
+      return fmt::format("link, or a device that did not read: it took the request {} late",
+                         text_of(*taken));
+    }
+    return "device, or the link from it: it took the request in time and answered late";
+  }
+  if (run.is_virtual()) return "device or link: in virtual time no host is late";
   if (trip.delivery) return "device or link: the kernel got it late, the sentinel was on time";
   return run.witness ? "device or link: the sentinel was on time" : "host, device or link";
 }
@@ -324,6 +404,9 @@ Report report_of(const LatencyRun& run) {
     facts.emplace_back("load", run.load.empty() ? "none of ours" : run.load);
   }
   if (!run.privileges.empty()) facts.emplace_back("permissions", privileges_of(run));
+  if (run.sending && run.sending->count() == 0) {
+    facts.emplace_back("sending", "unknown: on this link nobody stamps what leaves");
+  }
   if (run.witness) {
     facts.emplace_back("sentinel", fmt::format("overslept by {} at 50 %, 99 % and most",
                                                run.witness->lateness.summary()));
@@ -339,7 +422,7 @@ Report report_of(const LatencyRun& run) {
   if (run.measured.round_trips.count() == 0) return report;
   auto trips = round_trips_of(run);
   trips.plots = {curves_of(run.measured), bars_of(run.measured.round_trips)};
-  if (!run.measured.trips.empty()) trips.plots.push_back(series_of(run.measured));
+  if (!run.measured.trips.empty()) trips.plots.push_back(series_of(run));
   report.sections = {std::move(trips), shares_section_of(run)};
   if (!run.figures.empty()) report.sections.push_back(figures_of(run));
   if (run.cost) report.sections.push_back(cost_section_of(*run.cost));

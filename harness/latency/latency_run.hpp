@@ -37,6 +37,7 @@ struct LatencyRun {
   std::optional<std::chrono::sys_seconds> started;  ///< wall clock; none in virtual time
   MeterPlan plan;
   Measured measured;
+  std::optional<LatencyHistogram> sending;  ///< of further requests, as `time_sending`
   std::optional<Witness> witness;
   std::optional<Duration> time_on_wire;  ///< of an exchange, by arithmetic
   std::vector<Figure> figures;

@@ -77,6 +77,7 @@ Result<void> Meter::send_burst(Instant deadline) {
     if (auto drained = drain(); !drained) return drained;
     const auto sent = path_.now();
     book_.send(deadline, sent);
+    probe_.leaves(sent);
     Result<void> written;
     for (const auto message : messages) {
       if (written) written = path_.send(message);
@@ -131,11 +132,14 @@ void Meter::take(const Path::Arrival& arrival) {
   book_.note(Kind::kCame, arrival.time, arrival.size);
   const auto answers = probe_.receive(arrival.time, bytes);
   for (std::size_t i = 0; i < answers; ++i) {
-    probe_.answered(book_.end(arrival), arrival.time);
+    book_.end(arrival, probe_.answered(book_.awaited(), arrival.time));
   }
   path_.overhear(bytes);
 }
 
-void Meter::lose_pending() { book_.lose(path_.now(), path_.now() + kSettle); }
+void Meter::lose_pending() {
+  book_.lose(path_.now(), path_.now() + kSettle);
+  probe_.lost();
+}
 
 }  // namespace armjig

@@ -44,17 +44,18 @@ class IdleProbe final : public Probe {
     return requests;
   }
 
-  void answered(std::optional<Instant> sent, Instant /*received*/) override {
+  std::optional<Duration> answered(std::optional<Instant> sent, Instant /*received*/) override {
     const auto board = intervals_[told_++ % intervals_.size()];
     const auto host = sent && last_sent_ ? *sent - *last_sent_ : Duration::max();
     last_sent_ = sent;
-    if (host <= Duration{} || host > kLongestInterval) return;
+    if (host <= Duration{} || host > kLongestInterval) return std::nullopt;
     host_sum_ += host;
     board_sum_ += board;
     ++count_;
     const auto difference = board - host;
     (difference < Duration{} ? early_ : late_)
         .record(difference < Duration{} ? -difference : difference);
+    return difference;
   }
 
   std::vector<Figure> figures(const RunFacts& facts) const override {

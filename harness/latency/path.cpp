@@ -36,6 +36,18 @@ Duration wall_clock() noexcept {
   return duration_of(now);
 }
 
+/// What the kernel says of a message, if it does.
+std::optional<Duration> stamp_in(msghdr& message) noexcept {
+  for (auto* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
+    if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPING) continue;
+    scm_timestamping stamps{};
+    std::memcpy(&stamps, CMSG_DATA(part), sizeof stamps);
+    if (stamps.ts[0].tv_sec == 0) continue;
+    return duration_of({stamps.ts[0].tv_sec, stamps.ts[0].tv_nsec});
+  }
+  return std::nullopt;
+}
+
 Result<Path::Arrival> read_from(StreamPort& port, std::span<std::byte> into, Instant deadline) {
   return port.read(into, deadline).map([&](std::size_t size) {
     return Path::Arrival{size, port.now()};
@@ -64,9 +76,7 @@ class FilePath final : public Path {
     int type = 0;
     socklen_t size = sizeof type;
     is_socket_ = ::getsockopt(line.descriptor, SOL_SOCKET, SO_TYPE, &type, &size) == 0;
-    const int flags = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
-    has_stamps_ = is_socket_ && ::setsockopt(line.descriptor, SOL_SOCKET, SO_TIMESTAMPING, &flags,
-                                             sizeof flags) == 0;
+    has_stamps_ = is_socket_ && ask_for_stamps(kOfWhatComes);
   }
 
   Instant now() const override { return port_.now(); }
@@ -104,6 +114,18 @@ class FilePath final : public Path {
     return {};
   }
 
+  Result<std::optional<Duration>> time_send(Bytes message) override {
+    if (!has_stamps_ || !ask_for_stamps(kOfWhatComes | kOfWhatLeaves))
+      return Path::time_send(message);
+    const auto called = wall_clock();
+    const auto sent = send(message);
+    auto left = sent ? stamp_of_sent() : std::nullopt;
+    (void)ask_for_stamps(kOfWhatComes);
+    if (!sent) return tl::unexpected{sent.error()};
+    if (left) *left -= called;
+    return left;
+  }
+
   Result<Arrival> receive(std::span<std::byte> into, Instant deadline) override {
     for (;;) {
       const auto has_come = wait(POLLIN, deadline);
@@ -122,6 +144,29 @@ class FilePath final : public Path {
 
  private:
   static constexpr Duration kPatience = 2s;
+  static constexpr Duration kUntilStamped = 50ms;
+  static constexpr int kOfWhatComes = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
+  static constexpr int kOfWhatLeaves = SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_OPT_TSONLY;
+
+  bool ask_for_stamps(int flags) const noexcept {
+    return ::setsockopt(line_.descriptor, SOL_SOCKET, SO_TIMESTAMPING, &flags, sizeof flags) == 0;
+  }
+
+  /// When the last byte left, since 1970; all that is in the error queue is taken out.
+  std::optional<Duration> stamp_of_sent() const noexcept {
+    std::optional<Duration> stamp;
+    pollfd entry{.fd = line_.descriptor, .events = 0, .revents = 0};
+    const auto patience = timespec_of(kUntilStamped);
+    if (::ppoll(&entry, 1, &patience, nullptr) <= 0) return stamp;
+    alignas(cmsghdr) std::array<std::byte, 256> control;
+    msghdr message{};
+    message.msg_control = control.data();
+    for (;;) {
+      message.msg_controllen = control.size();
+      if (::recvmsg(line_.descriptor, &message, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) return stamp;
+      if (const auto one = stamp_in(message)) stamp = one;
+    }
+  }
 
   static Error gone(int error_number) noexcept {
     if (error_number == EIO) return {ErrorCode::kDisconnected, error_number};
@@ -150,14 +195,8 @@ class FilePath final : public Path {
     if (size <= 0 || !has_stamps_) return size;
     arrival.time = port_.now();
     const auto wall = wall_clock();
-    for (auto* part = CMSG_FIRSTHDR(&message); part != nullptr;
-         part = CMSG_NXTHDR(&message, part)) {
-      if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPING) continue;
-      scm_timestamping stamps{};
-      std::memcpy(&stamps, CMSG_DATA(part), sizeof stamps);
-      if (stamps.ts[0].tv_sec == 0) continue;
-      const timespec stamp{stamps.ts[0].tv_sec, stamps.ts[0].tv_nsec};
-      arrival.kernel = arrival.time - std::max(wall - duration_of(stamp), Duration{});
+    if (const auto stamp = stamp_in(message)) {
+      arrival.kernel = arrival.time - std::max(wall - *stamp, Duration{});
     }
     return size;
   }

@@ -34,6 +34,11 @@ class Path {
   /// What has come without being waited for, outside of what is measured.
   [[nodiscard]] virtual Result<Arrival> drain(std::span<std::byte> into) = 0;
   [[nodiscard]] virtual Result<void> send(Bytes message) = 0;
+  /// The same beside what is measured, and how long after the call the kernel handed the message to
+  /// the link. None: nobody tells.
+  [[nodiscard]] virtual Result<std::optional<Duration>> time_send(Bytes message) {
+    return send(message).map([] { return std::optional<Duration>{}; });
+  }
   /// Waits until something comes, but not beyond `deadline`.
   [[nodiscard]] virtual Result<Arrival> receive(std::span<std::byte> into, Instant deadline) = 0;
   /// What `receive` had, outside of what is measured.

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/core.h>
+
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "harness/core/bytes.hpp"
+#include "harness/core/error.hpp"
 #include "harness/core/time.hpp"
 #include "harness/rig/judge.hpp"
 
@@ -41,14 +45,28 @@ class Probe {
   /// What the user has to agree to for the request; at least that the device answers.
   [[nodiscard]] virtual Hazard hazard() const noexcept = 0;
 
+  /// From now on another one is measured, which the device has besides the first. Problems:
+  /// `kBadValue` with the names that there are.
+  [[nodiscard]] virtual Outcome<void> choose(std::string_view name) {
+    return problem(ErrorCode::kBadValue, fmt::format("--exchange {}", name),
+                   fmt::format("this device has one exchange only: {}", exchange()));
+  }
+
   /// The next request: what is written one after the other. Valid until the next call.
   [[nodiscard]] virtual Messages request() = 0;
+  /// It leaves now.
+  virtual void leaves(Instant /*now*/) {}
+  /// No answer comes to those that have left and were not answered.
+  virtual void lost() {}
   /// Takes what came, however it was cut. How many answers end in there, in the order of the
   /// requests; what the device says by itself is none.
   [[nodiscard]] virtual std::size_t receive(Instant now, Bytes bytes) = 0;
   /// The next of the answers that `receive` counted belongs to a request that was sent then; none:
-  /// to nothing.
-  virtual void answered(std::optional<Instant> /*sent*/, Instant /*received*/) {}
+  /// to nothing. If the answer tells: by how much more than the host the device counted between
+  /// this request and the one before.
+  virtual std::optional<Duration> answered(std::optional<Instant> /*sent*/, Instant /*received*/) {
+    return std::nullopt;
+  }
 
   /// In a recording, where others asked: takes what was sent, however it was cut. How many requests
   /// end in there to which an answer is due.

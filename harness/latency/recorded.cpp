@@ -104,7 +104,8 @@ class Conversation {
       book_.note(Kind::kCame, said.time, said.bytes.size());
       const auto answers = listener_->receive(said.time, said.bytes);
       for (std::size_t i = 0; i < answers; ++i) {
-        listener_->answered(book_.end({.size = said.bytes.size(), .time = said.time}), said.time);
+        book_.end({.size = said.bytes.size(), .time = said.time},
+                  listener_->answered(book_.awaited(), said.time));
       }
     }
     pending_ = book_.pending();

@@ -54,13 +54,14 @@ void TripBook::record_lateness() noexcept {
   measured_.lateness.record(sent - std::max(deadline, free_since_));
 }
 
-std::optional<Instant> TripBook::end(const Path::Arrival& arrival) {
+void TripBook::end(const Path::Arrival& arrival, std::optional<Duration> shift) {
   if (pending() == 0) {
     ++measured_.surplus;
-    return std::nullopt;
+    return;
   }
   const auto [deadline, sent] = pending_[ended_++ % kMostPending];
-  RoundTrip trip{.sent = sent, .duration = arrival.time - sent, .late = sent - deadline};
+  RoundTrip trip{
+      .sent = sent, .duration = arrival.time - sent, .late = sent - deadline, .shift = shift};
   if (arrival.kernel) {
     trip.delivery = arrival.time - *arrival.kernel;
     measured_.delivery.record(*trip.delivery);
@@ -83,7 +84,6 @@ std::optional<Instant> TripBook::end(const Path::Arrival& arrival) {
     progress_->answered.fetch_add(1, std::memory_order_relaxed);
     progress_->worst.store(measured_.round_trips.max().count(), std::memory_order_relaxed);
   }
-  return sent;
 }
 
 void TripBook::lose(Instant now, Instant settled) noexcept {

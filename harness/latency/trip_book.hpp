@@ -29,6 +29,8 @@ struct RoundTrip {
   Duration duration{};
   Duration late{};                   ///< of the sending, after its deadline
   std::optional<Duration> delivery;  ///< from the kernel's stamp until it was read
+  /// By how much more than the host the device counted since it took the request before.
+  std::optional<Duration> shift;
 };
 
 /// What happened to a message, for the traces of the worst.
@@ -91,8 +93,8 @@ class TripBook {
   /// It has left, after its deadline or after what was waited for, whatever was later.
   void record_lateness() noexcept;
   void skip(std::uint64_t deadlines) noexcept { measured_.skipped += deadlines; }
-  /// An answer has come. When its request was sent; none: it is the answer to nothing.
-  std::optional<Instant> end(const Path::Arrival& arrival);
+  /// An answer has come, to the oldest request that waits. `shift`: as of its round trip.
+  void end(const Path::Arrival& arrival, std::optional<Duration> shift = std::nullopt);
   /// No answer came to those that wait; until `settled` nobody shall ask.
   void lose(Instant now, Instant settled) noexcept;
   /// Forgets those that wait: nobody waited long enough to call them lost.
@@ -102,6 +104,11 @@ class TripBook {
   [[nodiscard]] std::size_t pending() const noexcept { return sent_ - ended_; }
   /// When the oldest that waits was sent. Requires one.
   [[nodiscard]] Instant oldest() const noexcept { return pending_[ended_ % kMostPending].sent; }
+  /// The same; none if an answer would be one to nothing.
+  [[nodiscard]] std::optional<Instant> awaited() const noexcept {
+    if (pending() == 0) return std::nullopt;
+    return oldest();
+  }
   [[nodiscard]] const Measured& measured() const noexcept { return measured_; }
 
  private:

@@ -165,11 +165,16 @@ list cells_data(const Table& table, const std::vector<std::string>& cells) {
 
 data section_data(const ReportSection& section, std::size_t number) {
   list plots;
+  for (const auto& line : section.timelines) plots.emplace_back().set("figure", to_figure(line));
   for (const auto& scene : section.scenes) plots.emplace_back().set("figure", to_figure(scene));
   for (const auto& plot : section.plots) plots.emplace_back().set("figure", to_figure(plot));
   list table_lines;
   for (const auto& cells : section.table.rows) {
-    table_lines.emplace_back().set("cells", cells_data(section.table, cells));
+    auto& entry = table_lines.emplace_back();
+    entry.set("cells", cells_data(section.table, cells));
+    entry.set("id", section.table.name.empty()
+                        ? data{false}
+                        : data{fmt::format("{}-{}", section.table.name, table_lines.size())});
   }
   data entry;
   entry.set("number", std::to_string(number));

@@ -47,6 +47,7 @@ void add_row(Json& json, const ReportRow& row) {
   add("source", row.source);
   add("expected", row.expected);
   add("actual", row.actual);
+  add("margin", row.margin);
   add("evidence", row.evidence);
   add("repeat", row.repeat);
   if (row.duration != Duration{}) json["duration_s"] = wording::seconds(row.duration);
@@ -98,6 +99,12 @@ void add_start(Json& json, const Report& report) {
 void add_end(Json& json, const Report& report) {
   json["conclusion"] = to_string(conclusion_of(report));
   json["counts"] = counts_json(report);
+  if (const auto& coverage = report.coverage) {
+    json["coverage"] = {{"all", coverage->all},
+                        {"judged", coverage->judged},
+                        {"within", coverage->within},
+                        {"judged_within", coverage->judged_within}};
+  }
 }
 
 void add_sections(Json& json, const Report& report) {

@@ -56,7 +56,7 @@ int error_of(int result) noexcept { return result < 0 ? errno : 0; }
 
 }  // namespace
 
-int write_all(int descriptor, std::string_view content) noexcept {
+int write_all(int descriptor, std::string_view& content) noexcept {
   while (!content.empty()) {
     const auto taken = ::write(descriptor, content.data(), content.size());
     if (taken >= 0) {
@@ -202,9 +202,12 @@ int OutputFile::append(std::string_view content) {
     descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFile);
     if (descriptor_ < 0) return errno;
   }
-  const auto complete = is_regular_ ? ::lseek(descriptor_, 0, SEEK_CUR) : 0;
-  const int error = write_all(descriptor_, content);
-  if (error != 0 && is_regular_) (void)!::ftruncate(descriptor_, complete);
+  auto left = content;
+  const int error = write_all(descriptor_, left);
+  if (error != 0 && is_regular_) {
+    const auto in_part = static_cast<off_t>(content.size() - left.size());
+    (void)!::ftruncate(descriptor_, ::lseek(descriptor_, 0, SEEK_CUR) - in_part);
+  }
   return error;
 }
 

@@ -76,8 +76,9 @@ class OutputFile {
   std::optional<Problem> failure_;
 };
 
-/// Writes all of it to a descriptor, however slowly it is taken. Answers 0 or the errno.
-[[nodiscard]] int write_all(int descriptor, std::string_view content) noexcept;
+/// Writes all of it to a descriptor, however slowly it is taken; what is written is taken off
+/// `content`. Answers 0 or the errno.
+[[nodiscard]] int write_all(int descriptor, std::string_view& content) noexcept;
 
 /// Problems: as for `OutputFile`.
 [[nodiscard]] Problem problem_of_writing(std::string where, int error_number);

@@ -143,6 +143,38 @@ figcaption { font-weight: 600; }
 .player input { flex: 1; min-width: 0; padding: 0; accent-color: var(--unclear); }
 .player output { min-width: 4.5rem; text-align: right; font-variant-numeric: tabular-nums; }
 :root:not(.js) .scene :is(svg, .player, .x-label) { display: none; }
+.timeline { scroll-margin-top: 1rem; }
+.steer { display: flex; flex-wrap: wrap; gap: .4rem; align-items: center; margin: .6rem 0; }
+.steer output { color: var(--soft); font-variant-numeric: tabular-nums; }
+:root:not(.js) .steer { display: none; }
+.track { display: grid; grid-template-columns: 10rem minmax(0, 1fr); gap: 0 1rem;
+  margin-top: .5rem; }
+.track h4 { margin: 0; font: 500 .82rem/1.4 inherit; color: var(--soft); font-size: .82rem; }
+.track .legend { gap: 0 .8rem; margin: 0; padding: 0; }
+.strip { position: relative; height: 1.5rem; background: var(--sunk); }
+.chart .strip { height: 8rem; }
+.plot .strip > svg { display: block; width: 100%; height: 100%; overflow: hidden; }
+.strip span { position: absolute; left: .2rem; font-size: 11px; line-height: 1;
+  color: var(--soft); background: var(--sunk); pointer-events: none; }
+.strip .high { top: .15rem; } .strip .low { bottom: .15rem; }
+.strip i { position: absolute; inset: 0 auto; width: 0; border-left: 1.5px solid var(--fail);
+  pointer-events: none; }
+.plot .strip .line { stroke-width: 1.25; }
+.lane { --s: var(--unclear); } .lane.fail { --s: var(--fail); }
+.plot .lane path { fill: color-mix(in srgb, var(--s) 30%, transparent); stroke-width: 2.5;
+  stroke-linecap: butt; cursor: pointer; }
+.lane a:is(:hover, :focus, .chosen) path { stroke: var(--ink); stroke-width: 4; }
+.axis { position: relative; height: 1.2rem; font-size: 12px; color: var(--soft);
+  font-variant-numeric: tabular-nums; }
+.axis span { position: absolute; translate: -50%; white-space: nowrap; }
+.messages { max-height: 32rem; overflow: auto; position: relative; }
+.messages td { padding: .2rem .8rem; font: .8rem/1.5 var(--mono); overflow-wrap: anywhere; }
+.messages td:not(:last-child) { white-space: nowrap; }
+.messages thead th { position: sticky; top: 0; }
+.messages tr { content-visibility: auto; contain-intrinsic-size: auto 1.6rem; }
+tr:target, .messages tr.chosen { background: color-mix(in srgb, var(--unclear) 18%,
+  transparent); }
+.messages .fail td:last-child { color: var(--c); }
 .no-data { padding: 4rem 0; text-align: center; color: var(--soft); }
 footer { margin-top: 3rem; color: var(--soft); font-size: .82rem; }
 
@@ -157,12 +189,14 @@ footer { margin-top: 3rem; color: var(--soft); font-size: .82rem; }
   .body { margin-left: .6rem; padding: .1rem .8rem .8rem; }
   .body dl { grid-template-columns: 1fr; gap: 0; } .body dd { margin-bottom: .4rem; }
   .plot { padding: .9rem 1.1rem .9rem .9rem; }
+  .track { grid-template-columns: minmax(0, 1fr); }
   .ticks .odd { display: none; }
 }
 @media print {
   :root { color-scheme: light !important; }
   body { max-width: none; padding: 0; font-size: 10pt; background: #fff; }
   .tools, #theme { display: none !important; }
+  .messages { max-height: none; } .steer { display: none; }
   .row { break-inside: avoid; } .topic { overflow: visible; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 }
@@ -257,6 +291,113 @@ inline constexpr std::string_view kScript = R"js(
   };
   document.querySelectorAll('.scene').forEach(showScene);
 
+  const showTimeline = (figure) => {
+    const length = +figure.dataset.seconds;
+    const strips = [...figure.querySelectorAll('.strip')];
+    const box = figure.querySelector('.messages');
+    const plot = figure.querySelector('.plot');
+    const clock = figure.querySelector('output');
+    const axis = figure.querySelector('.axis');
+    const rows = [...box.querySelectorAll('tbody tr')];
+    const timeOf = (row) => +row.cells[0].textContent;
+    const cursors = strips.map((strip) => strip.appendChild(document.createElement('i')));
+    let from = 0, to = length, chosen = null;
+    plot.tabIndex = 0;
+    const show = () => {
+      for (const strip of strips) {
+        strip.firstElementChild.setAttribute('viewBox', `${from} 0 ${to - from} 1000`);
+      }
+      const rough = (to - from) / 6, power = 10 ** Math.floor(Math.log10(rough));
+      const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
+      const digits = Math.max(0, -Math.floor(Math.log10(step)));
+      axis.replaceChildren();
+      for (let n = Math.ceil(from / step); n * step <= to; ++n) {
+        const tick = axis.appendChild(document.createElement('span'));
+        tick.textContent = (n * step).toFixed(digits);
+        tick.style.left = `${100 * (n * step - from) / (to - from)}%`;
+      }
+      const place = chosen === null ? -1 : (timeOf(chosen) - from) / (to - from);
+      for (const cursor of cursors) {
+        cursor.hidden = place < 0 || place > 1;
+        cursor.style.left = `${100 * place}%`;
+      }
+      clock.textContent = chosen === null ? '' : `${timeOf(chosen).toFixed(6)} s`;
+    };
+    const look = (begin, span) => {
+      const wide = Math.min(length, Math.max(span, length * 1e-6));
+      from = Math.min(Math.max(0, begin), length - wide);
+      to = from + wide;
+      show();
+    };
+    const choose = (row) => {
+      if (row === chosen) return;
+      const links = (each) => figure.querySelectorAll(`.lane a[href="#${each.id}"]`);
+      if (chosen) {
+        chosen.classList.remove('chosen');
+        for (const link of links(chosen)) link.classList.remove('chosen');
+      }
+      chosen = row;
+      row.classList.add('chosen');
+      for (const link of links(row)) link.classList.add('chosen');
+      const time = timeOf(row), span = to - from;
+      if (time < from || time > to) look(time - span / 2, span); else show();
+    };
+    const goTo = (row) => {
+      choose(row);
+      row.cells[0].firstElementChild.focus({ preventScroll: true });
+      box.scrollTop = row.offsetTop - box.clientHeight / 2;
+    };
+    const keys = {
+      '+': () => zoom(0.5), '=': () => zoom(0.5), '-': () => zoom(2),
+      ArrowLeft: () => look(from - (to - from) / 4, to - from),
+      ArrowRight: () => look(from + (to - from) / 4, to - from),
+      0: () => look(0, length),
+    };
+    const zoom = (factor) => {
+      const span = to - from, time = chosen === null ? -1 : timeOf(chosen);
+      const middle = time >= from && time <= to ? time : (from + to) / 2;
+      look(middle - (middle - from) * factor, span * factor);
+    };
+    for (const button of figure.querySelectorAll('.steer button')) {
+      button.addEventListener('click', () => keys[button.dataset.key]());
+    }
+    plot.addEventListener('keydown', (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey || !keys[event.key]) return;
+      event.preventDefault();
+      keys[event.key]();
+    });
+    plot.addEventListener('click', (event) => {
+      const strip = event.target.closest('.strip');
+      if (!strip) return;
+      event.preventDefault();
+      const link = event.target.closest('a');
+      if (link) return goTo(document.getElementById(link.getAttribute('href').slice(1)));
+      const sides = strip.getBoundingClientRect();
+      const time = from + (event.clientX - sides.left) / sides.width * (to - from);
+      const after = rows.findIndex((row) => timeOf(row) >= time);
+      const near = after < 0 ? rows.length - 1 : after;
+      if (near >= 0) goTo(rows[near]);
+    });
+    for (const kind of ['focusin', 'click']) {
+      box.addEventListener(kind, (event) => {
+        const row = event.target.closest('tbody tr');
+        if (!row) return;
+        if (kind === 'click') event.preventDefault();
+        choose(row);
+      });
+    }
+    box.addEventListener('keydown', (event) => {
+      const next = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+      const row = next && chosen ? rows[rows.indexOf(chosen) + next] : null;
+      if (!row) return;
+      event.preventDefault();
+      goTo(row);
+    });
+    const named = location.hash && document.getElementById(location.hash.slice(1));
+    if (rows.includes(named)) goTo(named); else show();
+  };
+  document.querySelectorAll('.timeline').forEach(showTimeline);
+
   const search = document.getElementById('search');
   if (!search) return;
   const rows = [...document.querySelectorAll('.row')];
@@ -311,7 +452,7 @@ inline constexpr std::string_view kScript = R"js(
 /// The policy lets no other script run, whatever a device wrote into the report.
 /// tests/integration/report_page_test.py fails if it does not fit the script, and says what would.
 inline constexpr std::string_view kScriptHash =
-    "sha256-UNes29pIrcmK5x+ksTSsl8dk6SFgwwgiqxqkphPLevs=";
+    "sha256-6ruNOiqOtiq2Gj8OZH7CyrpY1NLoiO85o1Xzwwc05Es=";
 
 inline constexpr const char* kTemplate = R"html(<!doctype html>
 <html lang="en">
@@ -403,7 +544,7 @@ inline constexpr const char* kTemplate = R"html(<!doctype html>
 </tr></thead>
 <tbody>
 {{#lines}}
-<tr>{{#cells}}<td{{#is_number}} class="number"{{/is_number}}>{{cell}}</td>{{/cells}}</tr>
+<tr{{#id}} id="{{id}}"{{/id}}>{{#cells}}<td{{#is_number}} class="number"{{/is_number}}>{{cell}}</td>{{/cells}}</tr>
 {{/lines}}
 </tbody></table></div>
 {{/has_table}}

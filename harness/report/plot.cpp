@@ -294,6 +294,21 @@ std::string tick_labels(const std::vector<Tick>& x_ticks, const std::vector<Tick
   return svg + "</g>\n";
 }
 
+/// Each dot by itself, a link to its row.
+std::string linked_dots(const Series& series, std::string_view classes, const Ruler& x,
+                        const Ruler& y) {
+  std::string svg;
+  for (std::size_t i = 0; i < series.points.size(); ++i) {
+    const Series one{.points = {series.points[i]}, .shape = series.shape};
+    const auto path = path_of(strokes_of(one, x, y), one.shape);
+    if (path.empty()) continue;
+    svg += fmt::format(
+        "<a href=\"#{0}-{1}\" aria-label=\"{2} {1}\"><path class=\"{3}\" d=\"{4}\"/></a>\n",
+        series.opens, i + 1, label(series.name), classes, path);
+  }
+  return svg;
+}
+
 std::string curves(const Plot& plot, const Ruler& x, const Ruler& y) {
   auto svg = fmt::format(
       "<svg viewBox=\"0 0 {:.0f} {:.0f}\" width=\"100%\" height=\"{:.0f}\" "
@@ -301,8 +316,10 @@ std::string curves(const Plot& plot, const Ruler& x, const Ruler& y) {
       kUnitsWide, kUnitsHigh, kPixelsHigh);
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const auto& series = plot.series[i];
-    svg += fmt::format("<path class=\"{} s{}\" d=\"{}\"/>\n", class_of(series.shape), i % kStyles,
-                       path_of(strokes_of(series, x, y), series.shape));
+    const auto classes = fmt::format("{} s{}", class_of(series.shape), i % kStyles);
+    svg += series.opens.empty() ? fmt::format("<path class=\"{}\" d=\"{}\"/>\n", classes,
+                                              path_of(strokes_of(series, x, y), series.shape))
+                                : linked_dots(series, classes, x, y);
   }
   return svg + "</svg>\n";
 }

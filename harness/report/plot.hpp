@@ -25,6 +25,7 @@ struct Series {
   std::string name{};               ///< for the legend; may be empty if it is the only one
   std::vector<PlotPoint> points{};  ///< x ascending, except for dots
   Shape shape = Shape::kLine;
+  std::string opens{};  ///< of dots: the table that has a row for each, in their order; empty: none
 };
 
 enum class Scale : std::uint8_t { kLinear, kLog };

@@ -15,6 +15,7 @@
 #include "harness/core/time.hpp"
 #include "harness/report/plot.hpp"
 #include "harness/report/scene.hpp"
+#include "harness/report/timeline.hpp"
 
 namespace armjig {
 
@@ -51,25 +52,49 @@ struct ReportRow {
   std::uint32_t line{};     ///< of the requirement in there, from 1; 0: not known
   std::string expected;
   std::string actual;    ///< what came instead, or why it was skipped or showed nothing
+  std::string margin{};  ///< what was measured nearest to a bound, and the bounds; empty: nothing
   std::string evidence;  ///< several lines: the last messages, decoded
   std::string repeat;    ///< the command that does this again
   Duration duration{};   ///< zero: not measured
+  /// Skipped because of what the run was told, or what its link or its hands cannot do.
+  bool is_left_out = false;
 };
 
 /// A table as it is read: one cell a column, written out with its unit.
 struct Table {
   std::vector<std::string> columns{};
   std::vector<std::vector<std::string>> rows{};
+  /// As plots call it whose dots open its rows: letters, digits, hyphens, once in a report; empty:
+  /// none does.
+  std::string name{};
 };
 
-/// What was measured, as opposed to checked: words, a table, scenes, then plots, each optional.
+/// What was measured, as opposed to checked: words, a table, time lines, scenes, then plots, each
+/// optional.
 struct ReportSection {
   std::string title{};
   std::string text{};
   Table table{};
   std::vector<Plot> plots{};
   std::vector<Scene> scenes{};
+  std::vector<Timeline> timelines{};
 };
+
+/// How much of what binds was judged, in requirements that a device must obey.
+struct Coverage {
+  std::size_t all{};            ///< of the profile
+  std::size_t judged{};         ///< of these
+  std::size_t within{};         ///< left by the run's options, its link and its hands
+  std::size_t judged_within{};  ///< of these
+
+  /// 1 if nothing is left.
+  [[nodiscard]] double share() const noexcept {
+    return within == 0 ? 1 : static_cast<double>(judged_within) / static_cast<double>(within);
+  }
+};
+
+/// `53 of 90 must requirements (58 %); of the 60 within reach of this run 53 (88 %)`.
+[[nodiscard]] std::string to_text(const Coverage& coverage);
 
 /// A run. All forms of it are made from this.
 struct Report {
@@ -77,6 +102,7 @@ struct Report {
   std::vector<std::pair<std::string, std::string>> facts;  ///< target, profile, seed, versions
   std::vector<ReportRow> rows;
   std::vector<ReportSection> sections;
+  std::optional<Coverage> coverage{};               ///< none: it was not about requirements
   std::optional<std::chrono::sys_seconds> started;  ///< wall clock; none in virtual time
 
   [[nodiscard]] std::array<std::size_t, kVerdictCount> counts() const noexcept;

@@ -100,6 +100,17 @@ std::string counts_line(const Report& report, Style style) {
   return line;
 }
 
+std::string to_text(const Coverage& coverage) {
+  // Rounded down: only all of them are 100 %.
+  const auto percent = [](std::size_t part, std::size_t whole) {
+    return whole == 0 ? 100 : part * 100 / whole;
+  };
+  return fmt::format(
+      "{} of {} must requirements ({} %); of the {} within reach of this run {} ({} %)",
+      coverage.judged, coverage.all, percent(coverage.judged, coverage.all), coverage.within,
+      coverage.judged_within, percent(coverage.judged_within, coverage.within));
+}
+
 std::string failures_text(const Report& report, Style style) {
   constexpr std::size_t kRoom = 100;
   std::string text;

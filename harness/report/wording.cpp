@@ -122,6 +122,7 @@ std::vector<Detail> details_of(const ReportRow& row) {
   add("source", row.source);
   add("expected", row.expected);
   add(is_reason(row.verdict) ? "reason" : "got", row.actual);
+  add("margin", row.margin);
   return details;
 }
 

@@ -204,6 +204,27 @@ Finding check_ptys(const System& system) {
           "sudo mount -t devpts devpts /dev/pts; in a container, start it with a /dev/pts"};
 }
 
+/// The dissectors are the user's own, or all users'.
+bool has_dissectors(const System& system) {
+  std::vector<fs::path> folders{system.root + system.home + "/.local/lib"};
+  for (const auto& name : entries(system.root + "/usr/lib")) {
+    folders.push_back(fs::path{system.root + "/usr/lib"} / name);
+  }
+  return std::ranges::any_of(folders, [](const fs::path& folder) {
+    return std::ranges::any_of(entries(folder / "wireshark/plugins"), [](const std::string& name) {
+      return name.starts_with("armjig_") && name.ends_with(".lua");
+    });
+  });
+}
+
+Finding check_wireshark(const System& system) {
+  const bool is_used =
+      is_there(system.root + "/usr/bin/tshark") || is_there(system.root + "/usr/bin/wireshark");
+  if (!is_used) return {"Wireshark", State::kOk, "it is not installed", ""};
+  if (has_dissectors(system)) return {"Wireshark", State::kOk, "it knows our devices", ""};
+  return {"Wireshark", State::kAdvice, "it does not know our devices", "armjig wireshark install"};
+}
+
 // This machine.
 
 std::vector<std::string> own_groups() {
@@ -244,8 +265,9 @@ std::string_view to_string(Finding::State state) noexcept {
 }
 
 std::vector<Finding> examine(const System& system, std::span<const KnownBoard> boards) {
-  constexpr std::array kChecks{check_group,  check_rules,    check_modem_manager, check_priority,
-                               check_memory, check_governor, check_slack,         check_ptys};
+  constexpr std::array kChecks{check_group,    check_rules,  check_modem_manager,
+                               check_priority, check_memory, check_governor,
+                               check_slack,    check_ptys,   check_wireshark};
   auto findings = check_ports(system, boards);
   for (const auto check : kChecks) findings.push_back(check(system));
   return findings;

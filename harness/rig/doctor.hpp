@@ -18,6 +18,7 @@ struct System {
   static constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
   std::string root;  ///< stands in front of /dev, /etc, /proc, ...; empty for this machine
+  std::string home;  ///< the user's, without `root`; empty: nobody said
   std::vector<SerialPort> ports;
   std::vector<std::string> groups;  ///< of the user, by name
   bool is_superuser = false;

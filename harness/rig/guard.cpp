@@ -98,7 +98,8 @@ Result<void> Guard::send_guarded(Bytes message) {
 Result<void> Guard::take_in(Instant deadline) {
   const auto heard = listen(deadline);
   if (!heard && judge_->may_be_moving()) {
-    refuse({Hazard::kMove, "the arm is out of sight", Refusal::Cause::kDevice});
+    refuse({Hazard::kMove, "the arm is out of sight", Refusal::Cause::kDevice,
+            Refusal::Matter::kUnseen});
   }
   look();
   return heard;
@@ -111,13 +112,14 @@ void Guard::hear(Bytes bytes) {
 
 void Guard::look() {
   if (auto reason = judge_->must_stop()) {
-    refuse({Hazard::kMove, *std::move(reason), Refusal::Cause::kDevice});
+    refuse({Hazard::kMove, *std::move(reason), Refusal::Cause::kDevice, judge_->matter_of_stop()});
   }
   report_change();
 }
 
 void Guard::refuse(Refusal refusal) {
   watch_->last_refusal = std::move(refusal);
+  ++watch_->refusals;
   stop_if_moving();
 }
 
@@ -134,8 +136,10 @@ Result<void> Guard::hand_over(Bytes message) {
 
 /// Makes sure that the judge reads what will be sent as the device does.
 Result<void> Guard::fall_into_step() {
+  if (is_in_step_) return {};
+  is_in_step_ = !judge_->needs_opening();
+  if (is_in_step_) return {};
   const auto opening = judge_->opening_bytes();
-  if (is_in_step_ || opening.empty()) return {};
   [[maybe_unused]] const auto refusal = judge_->judge(opening, permissions_);
   assert(!refusal);
   auto written = hand_over(opening);

@@ -19,6 +19,7 @@ class GuardState {
  public:
   /// Why one of them last refused something or stopped the device; none if none ever did.
   std::optional<Refusal> last_refusal;
+  std::size_t refusals = 0;  ///< how many there were
   /// A supervisor has stopped the device or was ended; `last_refusal` said so.
   bool is_unsupervised = false;
 

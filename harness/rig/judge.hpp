@@ -59,9 +59,17 @@ struct Refusal {
     kUnsupervised,  ///< nobody watches over it any more
   };
 
+  /// Of cause `kDevice`: what is the matter with it.
+  enum class Matter : std::uint8_t {
+    kAstray,   ///< it is where it should not be, or goes there
+    kStopped,  ///< its emergency stop is pressed, as far as it tells
+    kUnseen,   ///< nobody can see where it is
+  };
+
   Hazard hazard{};
   std::string reason;
   Cause cause{};
+  Matter matter{};
 };
 
 /// A refusal unless the user agreed: `WHAT needs --allow HAZARD`.
@@ -87,6 +95,9 @@ class Judge {
   /// whatever was half sent before; they are no command. Sent, and judged, before anything else and
   /// after a write that failed. Empty where there is no need.
   [[nodiscard]] virtual Bytes opening_bytes() const { return {}; }
+  /// Whether what was half sent before could become a command by what follows, so that they have to
+  /// be sent.
+  [[nodiscard]] virtual bool needs_opening() const { return !opening_bytes().empty(); }
 
   /// What time it is from now on, for whom that matters. Times never decrease.
   virtual void set_time(Instant /*now*/) {}
@@ -106,6 +117,8 @@ class Judge {
   /// Whether the device must be stopped now because of what was observed, and why: a joint at its
   /// bound, the emergency stop. Answers once for each reason.
   [[nodiscard]] virtual std::optional<std::string> must_stop() { return std::nullopt; }
+  /// What the last reason that `must_stop` gave was about.
+  [[nodiscard]] virtual Refusal::Matter matter_of_stop() const { return Refusal::Matter::kAstray; }
 
   /// Whether the device may be moving because of what was sent. Stays true until the device shows
   /// that it heard the end of it.

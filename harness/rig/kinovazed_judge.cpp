@@ -47,6 +47,7 @@ class KinovaJudge final : public Judge {
   [[nodiscard]] Bytes opening_bytes() const override {
     return std::as_bytes(std::span{kStop}).first(written_.line.empty() ? 0 : kLineEnd.size());
   }
+  [[nodiscard]] bool needs_opening() const override { return written_.may_begin_word; }
 
   std::optional<Refusal> judge(Messages messages, const Permissions& permissions) override {
     auto next = written_;
@@ -80,6 +81,7 @@ class KinovaJudge final : public Judge {
   /// What was written, as far as it matters.
   struct Written {
     std::string line;  ///< the end of the one that is being written, also across connections
+    bool may_begin_word = false;  ///< a byte of that line may be the first of a command
     bool may_be_moving = false;
     bool is_stick_deflected = false;
     int beats_at_rest = 0;
@@ -87,8 +89,13 @@ class KinovaJudge final : public Judge {
     void add(char byte) {
       if (byte == '\n') {
         if (line.ends_with("MoveJoystick:0:0:0\r")) is_stick_deflected = false;
+        may_begin_word = false;
         return line.clear();
       }
+      may_begin_word =
+          may_begin_word || std::ranges::any_of(kVerbNames, [byte](std::string_view name) {
+            return name.front() == byte;
+          });
       if (line.size() == 2 * kLongestWord) line.erase(0, 1);
       line.push_back(byte);
     }

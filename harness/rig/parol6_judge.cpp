@@ -20,6 +20,10 @@ namespace {
 /// So many frames without any answer, half a second at 100 Hz, and the arm counts as out of sight.
 constexpr int kOutOfSight = 50;
 
+/// A joint at its bound may overshoot by what it goes in a fiftieth of a second, the time in which
+/// the board closes a distance.
+constexpr int kOvershoot = 50;
+
 /// Ends whatever frame a receiver is in and begins none. At worst (parol6.receive.length-zero) a
 /// length of 0 takes 256 of these bytes, the last of them as a length, hence 85 more.
 constexpr std::size_t kFlushSize = 512;
@@ -169,9 +173,9 @@ class BoardJudge final : public Judge {
     for_each_step(splitter_, bytes, [this](const Splitter::Step& step) {
       const auto telemetry = telemetry_of(step);
       if (!telemetry) return;
-      telemetry_ = telemetry;
+      const auto before = std::exchange(telemetry_, telemetry);
       unanswered_ = 0;
-      if (may_be_moving() && !stop_reason_) stop_reason_ = reason_to_stop();
+      if (may_be_moving() && !stop_reason_) stop_reason_ = reason_to_stop(before);
       shipped_.observe(*telemetry_);
       strict_.observe(*telemetry_);
     });
@@ -181,6 +185,8 @@ class BoardJudge final : public Judge {
     auto reason = std::exchange(stop_reason_, std::nullopt);
     return may_be_moving() ? reason : std::nullopt;
   }
+
+  [[nodiscard]] Refusal::Matter matter_of_stop() const override { return matter_of_stop_; }
 
   [[nodiscard]] bool may_be_moving() const override {
     return shipped_.may_be_moving() || strict_.may_be_moving();
@@ -245,14 +251,15 @@ class BoardJudge final : public Judge {
 
   [[nodiscard]] Verdict refuse_when_unsafe(Hazard hazard) const {
     if (telemetry_ && is_estop_pressed(*telemetry_)) {
-      return Refusal{hazard, "the emergency stop is pressed", Refusal::Cause::kDevice};
+      return Refusal{hazard, "the emergency stop is pressed", Refusal::Cause::kDevice,
+                     Refusal::Matter::kStopped};
     }
     if (unanswered_ >= kOutOfSight) {
       return Refusal{hazard,
                      fmt::format("the board has not answered {} frames, so nobody could see its "
                                  "emergency stop",
                                  unanswered_),
-                     Refusal::Cause::kDevice};
+                     Refusal::Cause::kDevice, Refusal::Matter::kUnseen};
     }
     return std::nullopt;
   }
@@ -294,8 +301,15 @@ class BoardJudge final : public Judge {
                                               kJoints[excess.joint].max_speed.value)};
   }
 
-  [[nodiscard]] std::optional<std::string> reason_to_stop() const {
-    if (is_estop_pressed(*telemetry_)) return "the emergency stop was pressed";
+  [[nodiscard]] std::optional<std::string> reason_to_stop(
+      const std::optional<TelemetryFrame>& before) {
+    const bool is_stopped = is_estop_pressed(*telemetry_);
+    matter_of_stop_ = is_stopped ? Refusal::Matter::kStopped : Refusal::Matter::kAstray;
+    if (is_stopped) return "the emergency stop was pressed";
+    if (const auto j = runaway(before)) {
+      return fmt::format("j{} is at {} steps, beyond its range, and goes further", *j + 1,
+                         telemetry_->position[*j].value);
+    }
     for (const auto* board : {&shipped_, &strict_}) {
       if (const auto j = board->way().stray(now_, telemetry_->position)) {
         return fmt::format("j{} is at {} steps and does not follow its set-points", *j + 1,
@@ -311,6 +325,20 @@ class BoardJudge final : public Judge {
     return std::nullopt;
   }
 
+  /// A joint of a homed arm that is beyond its range and on its way out, whatever it was told.
+  [[nodiscard]] std::optional<std::size_t> runaway(
+      const std::optional<TelemetryFrame>& before) const {
+    if (!before || !is_arm_homed() || !is_homed(*before)) return std::nullopt;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const auto place = telemetry_->position[j];
+      const Steps slack{kJoints[j].max_speed.value / kOvershoot};
+      const bool is_above = place > kJointBounds[j].upper + slack && place > before->position[j];
+      const bool is_below = place + slack < kJointBounds[j].lower && place < before->position[j];
+      if (is_above || is_below) return j;
+    }
+    return std::nullopt;
+  }
+
   Instant now_{};
   ShippedReceiver receiver_;       ///< what the shipped board would make of the bytes
   Belief shipped_;                 ///< and do
@@ -320,6 +348,7 @@ class BoardJudge final : public Judge {
   Splitter splitter_{kTelemetryPayloadSize};
   std::optional<TelemetryFrame> telemetry_;
   std::optional<std::string> stop_reason_;
+  Refusal::Matter matter_of_stop_{};
   std::array<std::byte, kFlushSize + kCommandFrameSize> stop_{};
   Bytes stop_message_{stop_};
 };

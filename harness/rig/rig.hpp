@@ -63,6 +63,9 @@ class Rig {
     return watch_ == nullptr ? std::nullopt : watch_->last_refusal;
   }
 
+  /// How often the guard refused something or stopped the arm.
+  [[nodiscard]] std::size_t refusals() const { return watch_ == nullptr ? 0 : watch_->refusals; }
+
   /// The arm was stopped because this program gave no sign of life, and may not move any more.
   [[nodiscard]] bool is_unsupervised() const {
     return watch_ != nullptr && watch_->is_unsupervised;

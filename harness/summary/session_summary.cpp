@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "harness/capture/trace.hpp"
@@ -34,26 +33,18 @@ double rate(std::uint64_t count, Instant first, Instant last) noexcept {
   return count < 2 || last <= first ? 0 : static_cast<double>(count - 1) / seconds(last - first);
 }
 
-bool is_state(const Field& field) noexcept {
-  return field.encoding == Encoding::kBits || field.encoding == Encoding::kCode;
-}
-
-/// What a field says as a number, whatever its bits mean.
-double number_of(const Field& field, std::int64_t value) noexcept {
-  if (field.encoding != Encoding::kFloatLittle) return static_cast<double>(value);
-  return double{std::bit_cast<float>(static_cast<std::uint32_t>(value))};
-}
-
 }  // namespace
 
 /// What is said on one stream, connection or bus.
 struct SessionSummary::Talk {
+  CaptureLink link;
+  std::uint32_t id{};                    ///< of the last record
   std::unique_ptr<Dissector> dissector;  ///< none: nobody knows the device
   std::optional<Instant> asked;          ///< and no answer yet
 };
 
-SessionSummary::SessionSummary(FindDissector find_dissector)
-    : find_dissector_{std::move(find_dissector)} {}
+SessionSummary::SessionSummary(FindDissector find_dissector, HearMessage hear)
+    : find_dissector_{std::move(find_dissector)}, hear_{std::move(hear)} {}
 
 SessionSummary::~SessionSummary() = default;
 
@@ -63,6 +54,7 @@ SessionSummary::Talk& SessionSummary::talk_of(const CaptureRecord& record) {
   if (talk == nullptr) {
     ++conversations_;
     talk = std::make_unique<Talk>();
+    talk->link = *record.link;
     const auto make_dissector = find_dissector_(record.link->device);
     if (make_dissector != nullptr) talk->dissector = make_dissector();
     if (talks_.size() > kMostTalks) {  // a connection that is over, or it will be a new one
@@ -70,10 +62,11 @@ SessionSummary::Talk& SessionSummary::talk_of(const CaptureRecord& record) {
       if (oldest->second == talk) ++oldest;
       std::vector<Message> rest;
       if (oldest->second->dissector) oldest->second->dissector->finish(rest);
-      for (const auto& message : rest) take(message);
+      for (const auto& message : rest) take(*oldest->second, message);
       talks_.erase(oldest);
     }
   }
+  talk->id = record.id;
   return *talk;
 }
 
@@ -108,25 +101,30 @@ void SessionSummary::add(const CaptureRecord& record) {
   }
   if (!talk.dissector) return;
   std::vector<Message> messages;
+  if (lost_before(record) > 0) {
+    talk.dissector->finish(messages);
+    talk.dissector = find_dissector_(link.device)();
+  }
   if (link.kind == LinkKind::kBus) {
     const auto bytes = bus_message_of(record);
     if (!bytes.empty()) talk.dissector->feed(record.direction, record.time, bytes, messages);
   } else {
     talk.dissector->feed(record.direction, record.time, record.bytes, messages);
   }
-  for (const auto& message : messages) take(message);
+  for (const auto& message : messages) take(talk, message);
 }
 
 void SessionSummary::finish() {
-  std::vector<Message> rest;
   for (const auto& [key, talk] : talks_) {
+    std::vector<Message> rest;
     if (talk->dissector) talk->dissector->finish(rest);
+    for (const auto& message : rest) take(*talk, message);
   }
-  for (const auto& message : rest) take(message);
   talks_.clear();
 }
 
-void SessionSummary::take(const Message& message) {
+void SessionSummary::take(const Talk& talk, const Message& message) {
+  if (hear_) hear_(talk.link, talk.id, message);
   if (!message.fault.empty()) return take_finding(message);
   NameOf name{message.direction, message.name};
   if (messages_.size() < kMostMessages || messages_.contains(name)) {

@@ -18,10 +18,14 @@ namespace armjig {
 /// The dissector of a device by the name that a recording has for it; nullptr: there is none here.
 using FindDissector = std::function<MakeDissector(std::string_view device)>;
 
+/// Hears of each message, with its link and the `id` of the record that ended it.
+using HearMessage =
+    std::function<void(const CaptureLink& link, std::uint32_t id, const Message& message)>;
+
 /// What a recording shows, gathered record by record in memory that does not grow with it.
 class SessionSummary {
  public:
-  explicit SessionSummary(FindDissector find_dissector);
+  explicit SessionSummary(FindDissector find_dissector, HearMessage hear = {});
   SessionSummary(const SessionSummary&) = delete;
   SessionSummary& operator=(const SessionSummary&) = delete;
   ~SessionSummary();
@@ -30,6 +34,8 @@ class SessionSummary {
   /// After the last record.
   void finish();
 
+  /// Of the last record.
+  [[nodiscard]] Instant end() const noexcept { return end_; }
   /// Whether there were bytes that are no message.
   [[nodiscard]] bool has_findings() const noexcept { return !findings_.empty(); }
   /// For people, a screen of lines.
@@ -74,11 +80,12 @@ class SessionSummary {
   using NameOf = std::pair<Direction, std::string>;
 
   Talk& talk_of(const CaptureRecord& record);
-  void take(const Message& message);
+  void take(const Talk& talk, const Message& message);
   void take_values(const Message& message);
   void take_finding(const Message& message);
 
   FindDissector find_dissector_;
+  HearMessage hear_;
   Instant end_{};
   std::uint64_t records_{};
   std::uint64_t events_{};

@@ -4,21 +4,13 @@
 #include <fmt/core.h>
 
 #include "harness/core/hex.hpp"
+#include "harness/wire/append_text.hpp"
 
 namespace armjig {
 
 std::string to_line(const Message& message) {
-  constexpr std::size_t kMany = 8;
-  auto text = fmt::format("{:<11} {}", to_string(message.direction), message.name);
-  if (!message.fault.empty()) {
-    return text + fmt::format(": {}: {}", message.fault, to_short_dump(message.raw));
-  }
-  for (const auto& field : message.fields) {
-    if (field.encoding == Encoding::kLiteral) continue;
-    const auto value = field_value(field, message.raw);
-    if (value == 0 && message.fields.size() > kMany) continue;
-    text += fmt::format("  {} {}", field.name, field_text(field, value));
-  }
+  std::string text;
+  append_line(text, message);
   return text;
 }
 

@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/wire/field.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstddef>
 
+#include "harness/wire/append_text.hpp"
+
 namespace armjig {
 namespace {
-
-std::string bits_text(const Field& field, std::int64_t value) {
-  std::string text;
-  for (std::size_t i = 0; i < field.bits.size(); ++i) {
-    const bool is_set = (value >> (7 - i) & 1) != 0;
-    if (is_set && !field.bits[i].empty()) text += fmt::format("{} ", field.bits[i]);
-  }
-  return text + fmt::format("(0x{:02X})", value);
-}
-
-std::string code_text(const Field& field, std::int64_t value) {
-  const auto named = std::ranges::find(field.values, value, &NamedValue::value);
-  return named == field.values.end() ? fmt::format("{}", value)
-                                     : fmt::format("{} ({})", value, named->name);
-}
 
 /// The piece of that number, without the line end.
 std::string_view piece(Bytes message, std::size_t number) {
@@ -43,10 +28,6 @@ std::int64_t piece_value(const Field& field, std::string_view text) {
   std::int64_t value = -1;
   std::from_chars(text.data(), text.data() + text.size(), value);
   return value;
-}
-
-std::string number_text(const Field& field, const std::string& number) {
-  return field.unit.empty() ? number : fmt::format("{} {}", number, field.unit);
 }
 
 /// The place of the byte of rank `rank`, 0 being the most significant.
@@ -69,6 +50,15 @@ std::int64_t field_value(const Field& field, Bytes message) noexcept {
   return static_cast<std::int64_t>(raw << unused_bits) >> unused_bits;
 }
 
+double number_of(const Field& field, std::int64_t value) noexcept {
+  if (field.encoding != Encoding::kFloatLittle) return static_cast<double>(value);
+  return double{std::bit_cast<float>(static_cast<std::uint32_t>(value))};
+}
+
+bool is_state(const Field& field) noexcept {
+  return field.encoding == Encoding::kBits || field.encoding == Encoding::kCode;
+}
+
 void set_field_value(const Field& field, std::span<std::byte> message,
                      std::int64_t value) noexcept {
   auto rest = static_cast<std::uint64_t>(value);
@@ -78,22 +68,9 @@ void set_field_value(const Field& field, std::span<std::byte> message,
 }
 
 std::string field_text(const Field& field, std::int64_t value) {
-  switch (field.encoding) {
-    case Encoding::kBits:
-      return bits_text(field, value);
-    case Encoding::kCode:
-      return code_text(field, value);
-    case Encoding::kLiteral:
-      return fmt::format("0x{:0{}X}", value, 2 * field.width);
-    case Encoding::kFloatLittle:
-      return number_text(
-          field, fmt::format("{}", std::bit_cast<float>(static_cast<std::uint32_t>(value))));
-    case Encoding::kUnsigned:
-    case Encoding::kSigned:
-    case Encoding::kUnsignedLittle:
-      break;
-  }
-  return number_text(field, fmt::format("{}", value));
+  std::string text;
+  append_field_text(text, field, value);
+  return text;
 }
 
 const Field* find_field(std::span<const Field> fields, std::string_view name) noexcept {

@@ -51,6 +51,12 @@ struct Field {
 /// pieces.
 [[nodiscard]] std::int64_t field_value(const Field& field, Bytes message) noexcept;
 
+/// That value as a quantity, whatever its bits mean.
+[[nodiscard]] double number_of(const Field& field, std::int64_t value) noexcept;
+
+/// Whether the field says what is so, and not how much.
+[[nodiscard]] bool is_state(const Field& field) noexcept;
+
 /// Writes the low `width` bytes of `value`. Requires a field of `kBytes`.
 void set_field_value(const Field& field, std::span<std::byte> message, std::int64_t value) noexcept;
 

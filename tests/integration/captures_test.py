@@ -134,6 +134,26 @@ class Captures(unittest.TestCase):
         text = self.ok(ARMJIG, "decode", *words, "--csv")
         return lines, list(csv.DictReader(io.StringIO(text)))
 
+    def test_diff_finds_both_formats_equal_and_names_what_is_missing(self):
+        for name in RECORDINGS:
+            with self.subTest(name):
+                lines = SOURCE / "captures" / f"{name}.jsonl"
+                self.assertEqual(self.ok(ARMJIG, "diff", lines, self.packets_of(name)), "equal\n")
+        lines = SOURCE / "captures/kinovazed/session-startup.jsonl"
+        kept = lines.read_text().splitlines(keepends=True)
+        part, page = self.folder / "part.jsonl", self.folder / "diff.html"
+        part.write_text("".join(kept[:-1]))
+        lost = json.loads(kept[-1])
+        code, output, errors = run(ARMJIG, "diff", str(lines), str(part), "--json",
+                                   "--html", str(page))
+        self.assertEqual((code, errors), (1, []))
+        found = json.loads(output)
+        self.assertEqual((found["schema"], found["equal"]), ("armjig.diff/1", False))
+        [difference] = found["differences"]
+        self.assertEqual(difference["change"], "missing")
+        self.assertEqual(difference["before"]["t_us"], lost["t_ms"] * 1000)
+        self.assertIn("Side by side", page.read_text())
+
     def test_a_table_has_what_the_json_has(self):
         path = self.packets_of("parol6/outputs_sweep_a")
         lines, rows = self.decoded("parol6", "--file", path)
@@ -197,6 +217,9 @@ class Captures(unittest.TestCase):
         self.ok(ARMJIG, "trace", "cut", text, out, "--to", "2", "--redact")
         self.assertEqual(self.back(out), [{"format": "golden-trace/1", "device": "demo"},
                                           {"t_us": 1000000, "dir": "to_device", "hex": "a5718e"}])
+        code, _, errors = run(ARMJIG, "trace", "cut", str(text), str(out), "--from", "5")
+        self.assertEqual(code, 4)
+        self.assertIn("it has no record that was asked for", errors[0])
 
     # Of sessions
 
@@ -226,6 +249,63 @@ class Captures(unittest.TestCase):
         return b"".join(bytes.fromhex(line["hex"]) for line in lines
                         if line.get("dir") == direction)
 
+    def session_of(self, path):
+        """Of a session of another program: direction and bytes of each message."""
+        code, output, errors = run(ARMJIG, "decode", "kinovazed", "--json", "--file", str(path))
+        self.assertEqual(code, 1, errors)  # the client says a word that nobody knows
+        messages = [json.loads(line) for line in output.splitlines()]
+        return [(one["direction"], bytes.fromhex(one["hex"])) for one in messages], errors
+
+    def test_sessions_of_other_programs_are_read(self):
+        folder = SOURCE / "tests/data/captures"
+        whole = folder / "kinovazed-lo.pcap"
+        made = {"pcapng": self.folder / "a.pcapng", "nsecpcap": self.folder / "a.pcap",
+                "modpcap": self.folder / "b.pcap"}
+        for form, path in made.items():
+            self.ok("editcap", "-F", form, whole, path)
+        odd, even = self.folder / "odd.pcap", self.folder / "even.pcapng"
+        self.ok("editcap", "-r", whole, odd, *range(1, 25, 2))
+        self.ok("editcap", "-r", "-F", "pcapng", whole, even, *range(2, 25, 2))
+        both, swapped = self.folder / "both.pcapng", self.folder / "swapped.pcapng"
+        self.ok("mergecap", "-w", both, odd, even)
+        pieces = []
+        for numbers in ("1-7", "11", "8-10", "12-15", "18", "16-17", "19-24"):
+            pieces.append(self.folder / f"{numbers}.pcap")
+            self.ok("editcap", "-r", whole, pieces[-1], numbers)
+        self.ok("mergecap", "-a", "-w", swapped, *pieces)
+        messages, _ = self.session_of(whole)
+        self.assertEqual(b"".join(raw for to, raw in messages if to == "to_device"),
+                         b"QuitEStop\r\nEStop\r\nQuitEStop\r\nBogus\r\nEStop\r\n")
+        for path in (*made.values(), both, folder / "kinovazed-lo-and-any.pcapng"):
+            with self.subTest(path.name):
+                found, errors = self.session_of(path)
+                self.assertEqual(found, messages)
+                self.assertEqual(errors, [])
+        with self.subTest("out of order"):
+            for direction in ("to_device", "from_device"):
+                self.assertEqual([one for one in self.session_of(swapped)[0] if one[0] == direction],
+                                 [one for one in messages if one[0] == direction])
+        text = self.folder / "a.jsonl"
+        self.ok(ARMJIG, "trace", "convert", whole, text)
+        self.assertEqual(self.session_of(text)[0], messages)
+
+    def test_what_is_missing_in_a_session_of_another_program_is_told(self):
+        whole, part = SOURCE / "tests/data/captures/kinovazed-lo.pcap", self.folder / "part.pcap"
+        self.ok("editcap", whole, part, "11")  # the second QuitEStop, which was answered
+        messages, errors = self.session_of(part)
+        self.assertEqual([raw for to, raw in messages if to == "to_device"],
+                         [b"QuitEStop\r\n", b"EStop\r\n", b"Bogus\r\n", b"EStop\r\n"])
+        self.assertEqual(errors, [f"armjig: {part}: 11 bytes of TCP were not captured; "
+                                  "records that follow a gap say so"])
+        text = self.folder / "part.jsonl"
+        run(ARMJIG, "trace", "convert", str(part), str(text))
+        self.assertEqual([line["lost"] for line in lines_of(text) if "lost" in line], [11])
+
+    def test_an_interface_that_is_not_there_is_refused_with_those_that_are(self):
+        code, _, errors = run(ARMJIG, "decode", "kinovazed", "--interface", "no-such-one")
+        self.assertEqual(code, 3)
+        self.assertIn("no-such-one", errors[0])
+
     def test_every_command_with_a_wire_records_in_both_formats(self):
         script = f"{SOURCE}/harness/script/examples/joint6.rbt"
         nodes = self.folder / "nodes.toml"
@@ -251,6 +331,71 @@ class Captures(unittest.TestCase):
                 self.assertEqual(counts[0], counts[1])
                 self.assertTrue(counts[0])
                 self.ok(ARMJIG, "trace", "convert", packets, self.folder / "y.jsonl")
+                if words.startswith("plan"):  # of what would be sent; no device is there
+                    continue
+                for path in (packets, text):
+                    self.assertIn("identical: 1", self.ok(ARMJIG, "trace", "verify", path))
+
+    def test_a_recording_of_real_time_is_verified_to_the_byte(self):
+        for name in ("x.pcapng", "x.jsonl"):
+            path = self.folder / name
+            process, place = self.start("emulate", "parol6", "--set", "pass-us=37", "--capture",
+                                        path)
+            self.ask(place, 20)
+            process.send_signal(signal.SIGINT)
+            process.wait(PATIENCE)
+            self.assertIn("identical: 1", self.ok(ARMJIG, "trace", "verify", path))
+
+    def verdict_on(self, lines):
+        path = self.folder / "changed.jsonl"
+        path.write_text("".join(json.dumps(line) + "\n" for line in lines))
+        code, output, errors = run(ARMJIG, "trace", "verify", str(path))
+        return code, output + "".join(errors)
+
+    def test_what_an_emulated_device_did_not_do_is_found(self):
+        path = self.folder / "x.jsonl"
+        for device, exchange in (("parol6", "jog.speed"), ("kinovazed", "freeze"),
+                                 ("morap", "position")):
+            self.ok(ARMJIG, "conformance", device, "--target", "emulated:", "--filter", exchange,
+                    "--require", "0", "--capture", path)
+            lines = lines_of(path)
+            self.assertEqual(self.verdict_on(lines)[0], 0, device)
+            said = [i for i, line in enumerate(lines)
+                    if line.get("dir") == "from_device" or line.get("op") == "read"]
+            for i in (said[0], said[len(said) // 2], said[-1]):
+                changed = json.loads(json.dumps(lines))
+                number = int(changed[i]["hex"], 16) ^ 1
+                changed[i]["hex"] = f"{number:0{len(changed[i]['hex'])}x}"
+                code, told = self.verdict_on(changed)
+                self.assertEqual(code, 1, told)
+                self.assertIn(f":{i + 1}: differs", told)
+            late = dict(lines[1], since_us=0, text="armjig was late itself")
+            late["op" if "op" in late else "dir"] = "overlooked"
+            self.assertEqual(self.verdict_on([lines[0], late, *lines[1:]])[0], 0)
+            without = lines[:said[-1]] + lines[said[-1] + 1:]
+            self.assertEqual(self.verdict_on(without)[0], 0, "a host need not read the last")
+            early = json.loads(json.dumps(lines))
+            early[said[0]]["t_us"] = early[said[0] - 1].get("t_us", 0)
+            if device == "parol6":  # the answer was not there yet
+                self.assertEqual(self.verdict_on(early)[0], 1)
+
+    def test_what_cannot_be_verified_is_said(self):
+        path = self.folder / "x.jsonl"
+        self.ok(ARMJIG, "watch", "demo", "--target", "emulated:", "--count", "2", "--capture", path)
+        header, *records = lines_of(path)
+        for target, hint in ((None, "does not say what device"), ("pty:/tmp/arm", "pty:/tmp/arm"),
+                             ("emulated:?no-such=1", "no-such")):
+            header["target"] = target
+            if target is None:
+                del header["target"]
+            code, told = self.verdict_on([header, *records])
+            self.assertEqual(code, 2, told)
+            self.assertIn(hint, told)
+        header["target"] = "emulated:"
+        code, told = self.verdict_on([header])
+        self.assertEqual((code, "no answer is in there" in told), (2, True), told)
+        code, told = self.verdict_on([header, {"t_us": 5, "dir": "connect", "conn": 0}])
+        self.assertEqual((code, "not a line of" in told), (2, True), told)
 
     def test_a_killed_emulator_leaves_all_that_passed(self):
         for name in ("x.pcapng", "x.jsonl"):
@@ -298,7 +443,8 @@ class Captures(unittest.TestCase):
         process.wait(PATIENCE)
         lines = self.back(path)
         self.assertEqual(lines[0]["target"], "emulated:?profile=firmware")
-        self.assertEqual(lines[1]["dir"], "connect")
+        events = [line["dir"] for line in lines[1:] if line["dir"] != "overlooked"]  # a busy machine
+        self.assertEqual(events[0], "connect")
         self.assertEqual(self.bytes_of(lines, "to_device"), b"QuitEStop\r\n")
         self.assertIn("1 conversations", self.ok(ARMJIG, "trace", "show", path))
         self.ok("tshark", "-r", path)

@@ -44,7 +44,7 @@ constexpr std::size_t kTelemetrySize = 60;
 /// length of 0 takes 256 bytes and the last of them, 55, as a length, hence 85 bytes more.
 std::vector<std::byte> end_of_any_frame() { return std::vector<std::byte>(1024, std::byte{0x55}); }
 
-/// A host in a thread of its own, on a pseudo-terminal and on TCP.
+/// A host in a thread of its own, on a pseudo-terminal, on TCP and as a serial port over Telnet.
 class Running {
  public:
   explicit Running(std::unique_ptr<HostedStream> device, double speed = 1)
@@ -61,12 +61,14 @@ class Running {
 
   [[nodiscard]] std::string pty() const { return host_.targets()[0].substr(4); }
   [[nodiscard]] std::string tcp() const { return host_.targets()[1].substr(4); }
+  [[nodiscard]] std::string rfc2217() const { return host_.targets()[2].substr(8); }
 
  private:
   static Host open(std::unique_ptr<HostedStream> device, double speed) {
     HostOptions options;
     options.pty.emplace();
     options.tcp.emplace();
+    options.rfc2217 = TcpOptions{.protocol = TcpOptions::Protocol::kRfc2217};
     options.speed = speed;
     return std::move(Host::open(std::move(device), options).value());
   }
@@ -417,6 +419,46 @@ TEST(HostOnTcp, SurvivesAClientThatStopsReading) {
   ASSERT_TRUE(next->write(kPoll));
   EXPECT_EQ(read(*next, kTelemetrySize).size(), kTelemetrySize);
   EXPECT_GT(host.stop().links.frames_dropped, 0U);
+}
+
+// As RFC 2217 has it: IAC is FF, and FF as a byte of data FF FF, as at the end of `kReady`.
+
+constexpr auto kGreeting = "fffd00fffb00fffd03fffb03fffd2c";
+constexpr auto kReadyEscaped = "5a00ffff";
+
+/// Says what is written there, and tells what comes back.
+std::string say(StreamPort& port, std::string_view text, std::size_t answer) {
+  EXPECT_TRUE(port.write(from_hex(text).value()));
+  return to_hex(read(port, answer));
+}
+
+TEST(HostOnRfc2217, AnswersEachClientAndEscapes) {
+  Running host{demo_device()};
+  for (int i = 0; i < 3; ++i) {
+    const auto client = open_or_die(open_tcp_stream(host.rfc2217()));
+    EXPECT_EQ(to_hex(read(*client, 15)), kGreeting);
+    EXPECT_EQ(say(*client, "a5718e", 4), kReadyEscaped);
+  }
+  EXPECT_EQ(host.stop().links.frames_dropped, 0U);
+}
+
+TEST(HostOnRfc2217, AcknowledgesInTheMidstOfData) {
+  const Running host{demo_device()};
+  const auto client = open_or_die(open_tcp_stream(host.rfc2217()));
+  EXPECT_EQ(to_hex(read(*client, 15)), kGreeting);
+  // WILL COM-PORT: NOTIFY-MODEMSTATE B0. DTR on, within a request of the device.
+  EXPECT_EQ(say(*client, "fffb2c", 7), "fffa2c6bb0fff0");
+  EXPECT_EQ(say(*client, "a571fffa2c0508fff08e", 11), "fffa2c6908fff05a00ffff");
+}
+
+TEST(HostOnRfc2217, HoldsBackWhatAClientHasSuspended) {
+  const Running host{demo_device()};
+  const auto client = open_or_die(open_tcp_stream(host.rfc2217()));
+  (void)read(*client, 15);
+  EXPECT_EQ(say(*client, "fffb2c", 7), "fffa2c6bb0fff0");
+  // Suspend, a request of the device, purge: its confirmation comes alone.
+  EXPECT_EQ(say(*client, "fffa2c08fff0a5718efffa2c0c01fff0", 7), "fffa2c7001fff0");
+  EXPECT_EQ(say(*client, "fffa2c09fff0", 4), kReadyEscaped);
 }
 
 TEST(HostOnTcp, SaysThatThePortIsInUse) {

@@ -3,10 +3,7 @@
 // and read, in alternated rounds against one echo, over a pseudo-terminal and over TCP. And what
 // two rounds of the bare one differ by. Ratios are medians of the rounds'.
 #include <fmt/core.h>
-#include <poll.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <memory>
@@ -20,65 +17,23 @@
 #include "harness/rig/guarded_ports.hpp"
 #include "harness/timing/realtime.hpp"
 #include "harness/wire/demo/demo.hpp"
+#include "tests/integration/support/bare_trips.hpp"
 #include "tests/unit/support/link_ends.hpp"
 
 namespace armjig {
 namespace {
 
+using namespace testing;
+
 constexpr int kRounds = 11;
 constexpr std::size_t kTrips = 5'000;
 
-/// Until the other end is closed.
-void echo(int file) {
-  std::array<std::byte, 256> buffer;
-  for (;;) {
-    pollfd entry{.fd = file, .events = POLLIN, .revents = 0};
-    (void)::poll(&entry, 1, -1);
-    const auto size = ::read(file, buffer.data(), buffer.size());
-    if (size <= 0) return;
-    (void)!::write(file, buffer.data(), static_cast<std::size_t>(size));
-  }
-}
-
-struct Round {
-  double median;
-  double p99;
-};
-
-Round round_of(const LatencyHistogram& histogram) {
-  return {static_cast<double>(histogram.percentile(50).count()),
-          static_cast<double>(histogram.percentile(99).count())};
-}
-
-Round bare(int file, Bytes request) {
-  using Clock = std::chrono::steady_clock;
-  LatencyHistogram histogram;
-  std::array<std::byte, 256> buffer;
-  for (std::size_t i = 0; i < kTrips; ++i) {
-    const auto sent = Clock::now();
-    (void)!::write(file, request.data(), request.size());
-    for (std::size_t came = 0; came < request.size();) {
-      pollfd entry{.fd = file, .events = POLLIN, .revents = 0};
-      (void)::poll(&entry, 1, -1);
-      const auto size = ::read(file, buffer.data(), buffer.size());
-      if (size > 0) came += static_cast<std::size_t>(size);
-    }
-    histogram.record(Clock::now() - sent);
-  }
-  return round_of(histogram);
-}
-
-Round ours(StreamPort& port, Bytes request) {
+Trips ours(StreamPort& port, Bytes request) {
   const auto probe = generic::make_probe("echo", {request.begin(), request.end()}, request.size());
   const auto path = path_on(port, direct_line(port, {}).value());
   Meter meter{*path, *probe, {.period = std::nullopt, .expected = kTrips}, [] { return false; }};
   if (!meter.run({.count = kTrips}).value_or(false)) fmt::print("the link has gone\n");
-  return round_of(meter.measured().round_trips);
-}
-
-double middle(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
+  return trips_of(meter.measured().round_trips);
 }
 
 bool compare(std::string_view name, test::LinkEnds ends, DescriptorStream::Put put) {
@@ -94,9 +49,9 @@ bool compare(std::string_view name, test::LinkEnds ends, DescriptorStream::Put p
   (void)(*port)->read(opening, (*port)->now() + std::chrono::milliseconds{50});
   std::array<std::vector<double>, 4> ratios;
   for (int i = 0; i < kRounds; ++i) {
-    const auto first = bare(near, request);
+    const auto first = bare_trips(near, request, kTrips);
     const auto measured = ours(**port, request);
-    const auto second = bare(near, request);
+    const auto second = bare_trips(near, request, kTrips);
     ratios[0].push_back(measured.median / first.median);
     ratios[1].push_back(measured.p99 / first.p99);
     ratios[2].push_back(second.median / first.median);

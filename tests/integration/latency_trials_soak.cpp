@@ -42,7 +42,7 @@ std::vector<Slice> side(const Way& way, std::uint64_t seed, std::uint64_t machin
   RandomSource random{seed};
   const RandomSource load{machine};
   std::uint64_t answers = 0;
-  return test::slices_of(kSeconds, [=](auto) mutable {
+  return test::slices_of(4 * kSeconds, [=](auto) mutable {
     auto second = load.fork(answers++ / 100);
     const auto microseconds = way.microseconds(random) * slower + added;
     const auto loaded = std::max(microseconds, 1.0) * (second.happens(0.1) ? 1.2 : 1.0);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client with nothing of ours drives the emulated PAROL6 board over its pseudo-terminal.
+"""A client with nothing of ours drives the emulated PAROL6 board over its pseudo-terminal, and over
+RFC 2217 with no option that makes allowances for the server.
 
 Only python3-serial and the frame layout of the board's document: 100 Hz frames built by hand, every
 answer checked, a jog that must move the joint by what it says, a stop that must end it.
@@ -103,16 +104,33 @@ def check(port):
     return moved, elapsed
 
 
+def check_modem_lines(port):
+    assert (port.cts, port.dsr, port.cd, port.ri) == (True, True, True, False)
+    for state in (False, True):  # raises if the server does not acknowledge it
+        port.dtr = port.rts = port.break_condition = state
+    port.break_condition = False
+    port.reset_input_buffer()
+    port.reset_output_buffer()
+    port.apply_settings({"baudrate": 9600, "bytesize": 7, "parity": "E", "stopbits": 2})
+    port.apply_settings({"baudrate": 3_000_000, "bytesize": 8, "parity": "N", "stopbits": 1})
+    port.rtscts = True
+    port.rtscts = False
+
+
 def main():
-    program = subprocess.Popen([sys.argv[1], "emulate", "parol6"], stdout=subprocess.PIPE,
-                               text=True)
+    program = subprocess.Popen([sys.argv[1], "emulate", "parol6", "--pty", "--rfc2217", "0"],
+                               stdout=subprocess.PIPE, text=True)
     try:
         path = program.stdout.readline().strip().removeprefix("listening pty:")
-        for _ in range(2):  # and again, as a second client
-            with serial.Serial(path, 3_000_000, timeout=10) as port:
+        address = program.stdout.readline().strip().removeprefix("listening rfc2217:")
+        url = "rfc2217://" + address
+        for place in (path, path, url, url):  # and again, as a second client
+            with serial.serial_for_url(place, 3_000_000, timeout=10) as port:
+                if place == url:
+                    check_modem_lines(port)
                 moved, elapsed = check(port)
                 exchange(port, ENABLE)
-            print(f"jogged {moved} steps in {elapsed:.4f} s of the board's time")
+            print(f"jogged {moved} steps in {elapsed:.4f} s of the board's time over {place}")
     finally:
         program.send_signal(signal.SIGTERM)
         exit_code = program.wait(timeout=30)

@@ -263,6 +263,35 @@ def check_scene(check, browser, page):
     check.equal(f"{what}: complaints", [], browser.complaints())
 
 
+def check_timeline(check, browser, page):
+    """Marks go to their messages, messages to their moment; keys zoom."""
+    browser.open(page.as_uri(), "wide", "light")
+    if not browser.evaluate("document.querySelector('.timeline') !== null"):
+        return
+    what = f"{page.name} time line"
+    view = "document.querySelector('.strip svg').getAttribute('viewBox')"
+    chosen = "document.querySelector('.messages .chosen')?.id ?? ''"
+    whole = browser.evaluate(view)
+    mark = "document.querySelector('.lane:last-of-type a, .lane a')"
+    wanted = browser.evaluate(f"{mark}.getAttribute('href').slice(1)")
+    browser.evaluate(f"{mark}.dispatchEvent(new MouseEvent('click', "
+                     "{bubbles: true, cancelable: true}))")
+    check.equal(f"{what}: message of a mark", wanted, browser.evaluate(chosen))
+    check.equal(f"{what}: focus is on it", wanted,
+                browser.evaluate("document.activeElement.closest('tr')?.id ?? ''"))
+    browser.press("ArrowDown", 40)
+    check.equal(f"{what}: the next message", True,
+                browser.evaluate(chosen) not in (wanted, ""))
+    check.equal(f"{what}: its moment is marked", True,
+                browser.evaluate("[...document.querySelectorAll('.strip i')].every(i => !i.hidden)"))
+    browser.evaluate("document.querySelector('.timeline .plot').focus()")
+    browser.type("+")
+    check.equal(f"{what}: zoomed", True, browser.evaluate(view) != whole)
+    browser.type("0")
+    check.equal(f"{what}: all again", whole, browser.evaluate(view))
+    check.equal(f"{what}: complaints", [], browser.complaints())
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="for the screenshots")
@@ -280,6 +309,7 @@ def main():
                 check_looks(check, browser, page, folder)
                 check_use(check, browser, page)
                 check_scene(check, browser, page)
+                check_timeline(check, browser, page)
         finally:
             browser.close()
     print(f"screenshots in {folder}", flush=True)

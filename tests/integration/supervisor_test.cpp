@@ -195,6 +195,23 @@ Result<void> command(Activity activity, drive::Drive& drive, int cycle) {
 /// What a program does when its arm was stopped because nobody heard of it.
 enum class WhenForbidden { kEnd, kResume };
 
+/// Enables an arm until its board says that it has heard of it: one frame is lost if the program
+/// was stopped in the middle of another.
+Result<void> enable(drive::Drive& drive, drive::DriveLoop& loop) {
+  using Kind = drive::DriveEvent::Kind;
+  auto outcome = Kind::kNoEffect;
+  (void)drive.take_events();
+  while (outcome != Kind::kTookEffect) {
+    if (outcome == Kind::kNoEffect && !drive.enable()) return fail(ErrorCode::kRefused);
+    outcome = Kind::kLinkSilent;
+    if (auto sent = loop.cycle(); !sent) return sent;
+    for (const auto& event : drive.take_events()) {
+      if (event.command == Command::kEnable) outcome = event.kind;
+    }
+  }
+  return {};
+}
+
 /// Moves arms for ever, if it is let.
 int move(const std::vector<std::string>& targets, Activity activity, WhenForbidden when_forbidden) {
   const Wiring<StreamPort> wiring{
@@ -218,9 +235,9 @@ int move(const std::vector<std::string>& targets, Activity activity, WhenForbidd
       if (done) continue;
       if (done.error().code != ErrorCode::kForbidden) return kPortFailed;
       if (when_forbidden == WhenForbidden::kEnd) return kForbidden;
-      if (!rigs[i].resume() || !drives[i].enable()) return kPortFailed;
+      if (!rigs[i].resume()) return kPortFailed;
       // On a busy machine nobody may hear of this program again meanwhile.
-      const auto enabled = loops[i].cycle();
+      const auto enabled = enable(drives[i], loops[i]);
       if (!enabled && enabled.error().code != ErrorCode::kForbidden) return kPortFailed;
     }
   }

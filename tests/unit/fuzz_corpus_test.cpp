@@ -32,6 +32,9 @@
 #define LLVMFuzzerTestOneInput fuzz_rbtscript
 #include "fuzz/rbtscript.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_telnet_com_port
+#include "fuzz/telnet_com_port.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_trace_reader
 #include "fuzz/trace_reader.cpp"
 #include "tests/unit/support/source_dir.hpp"
@@ -77,6 +80,10 @@ TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {
 TEST(FuzzCorpus, AnyTextIsAProgramOrRefused) { run_corpus(fuzz_rbtscript, "rbtscript"); }
 
 TEST(FuzzCorpus, AnyFileIsACaptureOrRefused) { run_corpus(fuzz_capture_reader, "capture_reader"); }
+
+TEST(FuzzCorpus, CuttingAClientOfRfc2217DifferentlyChangesNothing) {
+  run_corpus(fuzz_telnet_com_port, "telnet_com_port");
+}
 
 TEST(FuzzCorpus, AnyTextIsATraceOrRefused) { run_corpus(fuzz_trace_reader, "trace_reader"); }
 

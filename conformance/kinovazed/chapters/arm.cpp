@@ -13,7 +13,7 @@ template <State state>
 void silent_stop(ServerBench& server) {
   enter(server, state);
   server.touch("arm.fail.status_read", 1);
-  server.expect_quiet(300ms);
+  server.expect_quiet(300ms + 3 * server.noise());
   server.expect_beat(3);
   server.expect_quiet(2s);
 }
@@ -47,7 +47,7 @@ constexpr Clause kClauses[] = {
     in(kIdle, "Initialized, and beat 21.",
        [](ServerBench& server) {
          server.touch("arm.fail.current_read", 1);
-         server.pause(300ms);
+         server.pause(300ms + 3 * server.noise());
          server.accept("QuitEStop");
          server.perform("Initialize", Event::kInitialized);
          server.expect_beat(21);
@@ -128,7 +128,7 @@ constexpr Clause kClauses[] = {
        [](ServerBench& server) {
          enter(server, kInitializing);
          server.touch("arm.mode", 1);
-         server.expect(Event::kInitialized, 200ms);
+         server.expect(Event::kInitialized, 200ms + 2 * server.noise());
        }),
 
     unobservable("what reaches the arm is not on the wire",

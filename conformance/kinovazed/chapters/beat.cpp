@@ -16,7 +16,7 @@ void value(ServerBench& server) {
 
 /// The arm cannot be read and not be opened again, for a while.
 void lose_arm(ServerBench& server) {
-  server.spoil(ServerBench::Recovery::kByHand);
+  server.spoil();
   server.touch("arm.fail.arm_open", -1);
   server.touch("arm.fail.status_read", 1);
   server.pause(150ms);
@@ -44,11 +44,16 @@ constexpr Clause kClauses[] = {
 
     must("kinovazed.beat.single", "There is one heartbeat in each second, and no other.",
          "server, recording heartbeat-period"),
+    /// A slow one reads its arm in between.
     in(kEmergencyStopped, "Four beats within 4.5 s behind one.",
        [](ServerBench& server) {
          (void)server.await_beat();
-         const auto count = server.count_beats(4500ms);
-         server.expect_true(count == 4, "4 beats within 4.5 s", std::to_string(count));
+         constexpr auto kTime = 4500ms;
+         const auto count = server.count_beats(kTime);
+         const auto least = std::min<Duration::rep>(kTime / (kBeatPeriod + server.noise()), 4);
+         server.expect_true(count <= 4 && count >= static_cast<std::size_t>(least),
+                            fmt::format("{} beats within 4.5 s", least < 4 ? "3 or 4" : "4"),
+                            std::to_string(count));
        }),
 
     must("kinovazed.beat.values",
@@ -85,7 +90,7 @@ constexpr Clause kClauses[] = {
          const auto first = server.await_beat();
          auto last = first;
          for (int i = 0; i < 3; ++i) {
-           for (int command = 0; command < 12; ++command) {
+           for (int command = 0; command < 12 && server.now() - last.time < 700ms; ++command) {
              server.accept("EStop");
              server.pause(50ms);
            }

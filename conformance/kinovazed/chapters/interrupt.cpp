@@ -26,6 +26,25 @@ void fold_while_initializing(ServerBench& server) {
   server.touch("arm.mode", 3);
 }
 
+constexpr std::string_view kFar = std::string_view{kFarObjective}.substr(13);
+
+Duration time_of_initializing(ServerBench& server) {
+  switch_off(server);
+  const auto said = server.now();
+  return server.perform("Initialize", Event::kInitialized).time - said;
+}
+
+/// Ended early on its way to the ready pose, an arm is not there later, so that Initialize takes
+/// time.
+void expect_not_ready(ServerBench& server, std::string_view command) {
+  server.accept(command);
+  server.pause(600ms);
+  switch_off(server);
+  server.pause(kLater);
+  server.about("Initialize behind EStop early on the way");
+  expect_time(server, time_of_initializing(server), 700ms, ServerBench::kMotionTime);
+}
+
 constexpr Clause kClauses[] = {
     must("kinovazed.event.table",
          "The arm's own ends act where they are awaited: folding ends in retracted, unfolding "
@@ -123,6 +142,46 @@ constexpr Clause kClauses[] = {
          initialize_afresh(server);
          server.expect_beat(21);
        }),
+
+    must("kinovazed.interrupt.mode-stops",
+         "SetJoystickMode stops the arm on its way to an objective.",
+         "document; server; reference 6.6"),
+    in(kIdle, "Stopped in the first quarter of the way, it is not at its end later.",
+       [](ServerBench& server) {
+         (void)time_of(server, "Home");
+         const auto whole = time_of(server, kFar);
+         (void)time_of(server, "Home");
+         server.accept(kFarObjective);
+         server.pause(whole / 4);
+         server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+         server.pause(whole);
+         server.about("the way back from a quarter of the way");
+         expect_time(server, time_of(server, "Home"), 0ms, whole * 6 / 10 + server.noise());
+       }),
+
+    must("kinovazed.interrupt.estop-stops",
+         "EStop stops the arm: it is neither folded nor ready later if it was on its way.",
+         "document; server; recording session-estop-mid-retract"),
+    variant("retracting", in(kIdle, "Early on the way to the folded pose: the way back is short.",
+                             [](ServerBench& server) {
+                               server.perform("Retract", Event::kRetracted);
+                               const auto whole = time_of_initializing(server);
+                               server.accept("Retract");
+                               server.pause(600ms);
+                               switch_off(server);
+                               server.pause(kLater);
+                               server.about("Initialize behind EStop early on the way");
+                               expect_time(server, time_of_initializing(server), 0ms,
+                                           whole * 3 / 4 + server.noise());
+                             })),
+    variant("unfolding", in(kUnfolding, "Early on the way to the ready pose: it is not there.",
+                            [](ServerBench& server) { expect_not_ready(server, "Unfold"); })),
+    variant("initializing",
+            in(kInitializing, "Early on the way to the ready pose: it is not there.",
+               [](ServerBench& server) {
+                 switch_off(server);
+                 expect_not_ready(server, "Initialize");
+               })),
 
     must("kinovazed.retract.from-anywhere",
          "Retract with the arm elsewhere goes by way of the ready pose, and Retracted comes "

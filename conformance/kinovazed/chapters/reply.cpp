@@ -29,7 +29,7 @@ void expect_soon(ServerBench& server, std::string_view command, Event answer) {
   const auto said = server.now();
   server.say(command);
   const auto heard = server.expect(answer);
-  expect_time(server, heard.time - said, 0ms, 500ms + server.noise());
+  expect_time(server, heard.time - said, 0ms, ServerBench::kAnswerTime + server.link_noise());
 }
 
 /// With `Current` active the position in its frame is the origin, which every server survives.

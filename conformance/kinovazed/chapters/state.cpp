@@ -66,13 +66,23 @@ void refused(ServerBench& server) {
   server.expect_beat(beat_of(state).flags);
 }
 
-/// Of states that end by themselves.
+/// Of states that end by themselves. A mode takes half a second, in which a slow server has no time
+/// for all of them; so the rest is for the next time.
 template <State state, const auto& commands, Event event>
 void refused_until(ServerBench& server) {
-  enter(server, state);
-  refuse_all(server, commands);
-  server.about(std::string{to_string(event)} + " behind refused commands");
-  server.expect(event, ServerBench::kMotionTime);
+  constexpr Duration kTime = state == State::kSettingMode ? 250ms : Duration::max();
+  for (std::span<const std::string_view> rest{commands}; !rest.empty() && !server.is_over();) {
+    enter(server, state);
+    const auto entered = server.now() - server.noise();
+    do {
+      server.refuse(rest.front());
+      rest = rest.subspan(1);
+    } while (!rest.empty() && !server.is_over() && server.now() - entered < kTime);
+    server.about(std::string{to_string(event)} + " behind refused commands");
+    server.expect(event, ServerBench::kMotionTime);
+    // A mode that is set already may be there at once.
+    if (!rest.empty()) server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
+  }
 }
 
 /// The arm may be there already.
@@ -308,9 +318,22 @@ constexpr Clause kClauses[] = {
          "server, state-command-matrix"),
     in(kRunningSequence, "Beat 5, then JoystickModeSet.",
        [](ServerBench& server) {
-         server.wait_until_before_beat(kBeforeBeat + 60ms);
-         server.accept(kFarObjective);
-         server.accept("SetJoystickMode:Rotation");
+         // The beat has to come when both are accepted; how long that takes shows the first time.
+         Duration lead = kBeforeBeat + 60ms;
+         const auto set_mode = [&] {
+           server.wait_until_before_beat(lead);
+           const auto begin = server.now();
+           server.accept(kFarObjective);
+           server.accept("SetJoystickMode:Rotation");
+           return server.now() - begin;
+         };
+         const auto taken = set_mode();
+         if (taken > 250ms + server.link_noise()) {
+           server.expect(Event::kJoystickModeSet);
+           server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
+           lead = taken + 250ms;
+           (void)set_mode();
+         }
          server.expect_beat(5);
          server.expect(Event::kJoystickModeSet);
        }),

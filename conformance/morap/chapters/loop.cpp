@@ -52,6 +52,31 @@ std::vector<int> levels_by_law(NodeBench& node, const ControllerSet& set, float 
   return levels;
 }
 
+/// What the reference and the shaft are at one tick.
+struct Sample {
+  float reference;
+  int counts;
+};
+
+/// Another reference and another place of the shaft at each tick.
+void follow(NodeBench& node, const ControllerSet& set, std::span<const Sample> samples) {
+  const MotorLaw motor{node.motor()};
+  LoopLaw law{node.motor(), set, 0, double{samples[0].reference}};
+  run(node, set, samples[0].reference);
+  int counts = samples[0].counts;
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    const auto& [reference, place] = samples[i];
+    const auto levels = levels_of(law.step(motor.angle(place), double{reference}));
+    const auto& next = samples[i + 1];
+    if (next.reference != reference) {
+      node.send(set.kind == ControllerKind::kSpeed ? kSpeed : kPosition, next.reference);
+    }
+    if (next.counts != counts) node.turn(next.counts - counts);
+    counts = next.counts;
+    node.expect_levels_at_ticks({levels});
+  }
+}
+
 /// One of the stored ones, on a held shaft.
 void stored(NodeBench& node, CommandId mode, float reference, std::string_view stored,
             std::initializer_list<int> counts) {
@@ -111,6 +136,52 @@ constexpr Clause kClauses[] = {
            run(node, position_set({gain, 2 * gain}, {0.0F}, {0.0F}), 0.0F);
            node.turn(kCounts);
            node.expect_levels_at_ticks({0, -11, -16});  // -0.5 V, then -0.75 V
+         }),
+
+    must("morap.loop.four-coefficients",
+         "All four coefficients of each filter count, each for its own sample.",
+         "firmware, feedback loop; recording static-custom-controller-locked", Profiles::kFirmware),
+    variant("reference",
+            loop("Six references, one after the other.",
+                 [](NodeBench& node) {
+                   constexpr Sample kSamples[] = {{0.25F, 0}, {0.5F, 0},  {-0.25F, 0},  {0.125F, 0},
+                                                  {0.0F, 0},  {0.75F, 0}, {0.0625F, 0}, {0.0F, 0}};
+                   const auto set = position_set({0.0F}, {0.3F, -0.5F, 1.1F, 0.7F}, {0.0F});
+                   follow(node, set, kSamples);
+                 })),
+    variant("angle", loop("The shaft at six places, one after the other.",
+                          [](NodeBench& node) {
+                            constexpr Sample kSamples[] = {{0, 0}, {0, 10}, {0, -20}, {0, 30},
+                                                           {0, 5}, {0, 5},  {0, 5},   {0, 5}};
+                            const float gain = gain_of_counts(node);
+                            const auto set =
+                                position_set({0.3F * gain, -0.5F * gain, 1.1F * gain, 0.7F * gain},
+                                             {0.0F}, {0.0F});
+                            follow(node, set, kSamples);
+                          })),
+    variant("output",
+            loop("The echo of one reference.",
+                 [](NodeBench& node) {
+                   constexpr Sample kSamples[] = {{0, 0}, {1.0F, 0}, {0, 0}, {0, 0},    {0, 0},
+                                                  {0, 0}, {0, 0},    {0, 0}, {0.5F, 0}, {0, 0}};
+                   const auto set = position_set({0.0F}, {0.75F}, {-0.2F, 0.3F, 0.4F, -0.5F});
+                   follow(node, set, kSamples);
+                 })),
+
+    must("morap.loop.begins-still",
+         "A speed loop begins as if the shaft had always stood, however far it was turned before.",
+         "firmware, feedback loop", Profiles::kFirmware),
+    loop("A turn before the mode, and none behind it.",
+         [](NodeBench& node) {
+           auto set = proportional(kRate, 1.0F, ControllerKind::kSpeed);
+           set.d = filter({gain_of_counts(node)});
+           node.send(set);
+           node.send(kCalibrateZero);
+           node.turn(1000);
+           node.tick();
+           node.send(kSpeed, 0.75F);
+           node.tick(kRate);
+           node.expect_levels_at_ticks({16, 16, 16});
          }),
 
     must("morap.loop.feedback-of-output", "The coefficients of earlier outputs are taken off.",

@@ -186,6 +186,20 @@ constexpr Clause kClauses[] = {
     programming("255.",
                 [](NodeBench& node) { expect_outcome(node, "20 00 C8 00 00 00 FF", kFailure); }),
 
+    must("morap.program.too-many-any", "Any count above 4 is refused, of each filter.",
+         "document, parameter message; recording static-program-limits"),
+    programming("Seven counts of each filter.",
+                [](NodeBench& node) {
+                  for (const auto* const before : {"", "00 ", "00 00 "}) {
+                    for (const auto* const count : {"05", "06", "08", "10", "40", "80", "FF"}) {
+                      const auto message = fmt::format("20 00 C8 00 {}{}", before, count);
+                      expect_outcome(node, fmt::format("20 {}", good()), kSuccess);
+                      node.about(message);
+                      expect_outcome(node, message, kFailure);
+                    }
+                  }
+                }),
+
     must("morap.program.too-many-rest",
          "What follows a refused count is ignored until the write ends.",
          "recording static-program-limits"),

@@ -237,6 +237,23 @@ constexpr Clause kClauses[] = {
         },
         kFresh),
 
+    must("morap.angle.many-turns", "The angle counts on beyond 16 bits of the encoder, both ways.",
+         "firmware, encoder: counts have 32 bits"),
+    state(
+        "Beyond 32,767 and 65,535 counts, and below -32,768.",
+        [](NodeBench& node) {
+          const MotorLaw motor{node.motor()};
+          int counts = 0;
+          for (const int by : {30'000, 2'767, 1, 32'000, 1'000, -66'000, -32'000, -1'000}) {
+            node.turn(by);
+            counts += by;
+            const auto angle = motor.angle(counts);
+            node.about(fmt::format("{} counts", counts));
+            node.expect_near(kReadAngle, angle, 1e-5 + 1e-6 * std::abs(angle));
+          }
+        },
+        kFresh),
+
     must("morap.angle.sign", "Counts downwards make the angle smaller.", "vector 13"),
     state(
         "One count down.",

@@ -79,8 +79,8 @@ constexpr Clause kClauses[] = {
          [](BoardBench& board) {
            board.spoil();
            const auto length = run_out(board).length;
-           board.expect_true(length > 1900ms && length < 2100ms, "one answer after 2 s",
-                             fmt::format("it took {} ms", length / 1ms));
+           board.expect_in_time({milliseconds(length), 1900, 2100, "ms"}, "one answer after 2 s",
+                                fmt::format("it took {} ms", length / 1ms));
          }),
 
     must("parol6.demo.ramp",

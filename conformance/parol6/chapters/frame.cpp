@@ -284,8 +284,9 @@ constexpr Clause kClauses[] = {
              if (answer.received - answer.asked < kFramePeriod) ++in_time;
              board.pause(std::max<Duration>(kFramePeriod - (board.now() - answer.asked), 0ms));
            }
-           board.expect_true(in_time > kFrames / 2, "more than 25 of 50 answers within 10 ms",
-                             fmt::format("{} were", in_time));
+           board.expect_in_time({static_cast<double>(in_time), 26, kFrames, "answers"},
+                                "more than 25 of 50 answers within 10 ms",
+                                fmt::format("{} were", in_time));
          }),
 };
 

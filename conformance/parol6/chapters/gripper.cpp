@@ -453,6 +453,24 @@ constexpr Clause kClauses[] = {
         "Something held with 300 mA shows as -300.",
         [](BoardBench& board) { board.expect(hold(board, 300), "gripper.current", -300); }, kFull),
 
+    must("parol6.gripper.current-free",
+         "While the fingers move and meet nothing, the gripper's current is shown with the sign of "
+         "their motion, and no more than was allowed.",
+         "firmware; gripper"),
+    grip(
+        "Closing and opening with 1000 mA.",
+        [](BoardBench& board) {
+          prepare(board, 0);
+          board.about("fingers that close freely");
+          const auto closing = board.keep_asking(with_gripper(to(250, 20, 1000)), 400ms);
+          board.expect_between(closing, "gripper.current", -1000, -1);
+          board.keep_asking(with_gripper(to(250, 20, 1000)), kWholeWay);
+          board.about("fingers that open freely");
+          const auto opening = board.keep_asking(with_gripper(to(0, 20, 1000)), 400ms);
+          board.expect_between(opening, "gripper.current", 1, 1000);
+        },
+        kFull),
+
     must("parol6.gripper.current-any", "A current beyond 1300 mA is passed on.", "firmware",
          Profiles::kFirmware, "parol6.gripper.current-range"),
     grip(

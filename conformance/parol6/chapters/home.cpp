@@ -69,6 +69,30 @@ Answer hold_home(BoardBench& board) {
   return board.keep_asking(with_code(kHome), 100ms);
 }
 
+/// The same stages as the first time, to the same places, and each joint at its switch again.
+void expect_second_run(BoardBench& board) {
+  const auto first = board.homing_log().back();
+  std::vector<Answer> log{board.ask(idle())};
+  board.act(with_code(kHome));
+  const auto is_over = [&](const Answer& answer) {
+    log.push_back(answer);
+    return is_homed(answer);
+  };
+  board.about("homing a homed arm");
+  if (!board.ask_until(idle(), is_over, 90s)) return board.fail("all joints homed", "not in 90 s");
+  const HomingRecord run{log};
+  const std::vector wanted{kNoneHomed, kFirstThreeHomed, kFirstFourHomed, kAllHomed};
+  board.expect_true(run.bits() == wanted, "homed = 03 E3 F3 FF, one after the other", "others");
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto bits = j < 3 ? kNoneHomed : j == 3 ? kFirstThreeHomed : kFirstFourHomed;
+    for (const auto speed : {kHoming[j].back_off, kHoming[j].slow_seek}) {
+      board.expect_true(run.with_speed(bits, j, speed).size() > 2,
+                        fmt::format("{} = {} for a while", speed_field(j), speed), "never");
+    }
+    board.expect_same(log.back(), position_field(j), first);
+  }
+}
+
 constexpr Clause kClauses[] = {
     must("parol6.home.idle-speeds-ignored", "Speeds in idle frames do not disturb homing.",
          "firmware: 255 leaves them alone"),
@@ -143,6 +167,13 @@ constexpr Clause kClauses[] = {
            expect_ended(board, jog({}));
            board.act(with_code(kEnable));
          }),
+
+    variant("moving",
+            from(kEnabled, Hazard::kHome, "Idle does not resume homing after a jog of J5.",
+                 [](BoardBench& board) {
+                   expect_ended(board, jog(4, 300));
+                   board.act(with_code(kEnable));
+                 })),
 
     must("parol6.home.ended-by-go-to", "A go-to ends homing: idle frames do not resume it.",
          "firmware"),
@@ -307,6 +338,8 @@ constexpr Clause kClauses[] = {
                 board.expect_true(board.ask_until(idle(), is_done, 90s).has_value(),
                                   "all joints homed", "not within 90 s");
               })),
+    variant("in-full", full(from(kHomed, Hazard::kHome, "The second run is like the first.",
+                                 on<expect_second_run>))),
 
     must("parol6.home.held", "A home command held until homing ends starts the next run.",
          "firmware, vector B11", Profiles::kFirmware, "parol6.home.held-once"),

@@ -47,22 +47,27 @@ void expect_rest(BoardBench& board, std::uint8_t homed, std::size_t joint) {
     board.expect(answer, position_field(joint), kHoming[joint].end);
 }
 
+/// Of a final move.
+enum class Part : std::uint8_t { kBegin, kEnd };
+
 /// Judged at a quarter of the way, where neither the first steps nor the maximum matter much.
 void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int from, int to,
-                 double acceleration) {
+                 double acceleration, Part part = Part::kBegin) {
   constexpr double kTolerance = 0.03;
   int judged = 0;
   const auto sign = to > from ? 1 : -1;
   for (const auto& answer : record(board).with_bits(homed)) {
-    const auto way = (position(answer, joint) - from) * sign;
+    const auto at = position(answer, joint);
+    const auto way = (part == Part::kBegin ? at - from : to - at) * sign;
     const auto speed = answer.speed[joint].value * sign;
-    const bool is_speeding_up = way > 200 && way < std::abs(to - from) / 3 && speed > 0;
+    const bool is_on_ramp = way > 200 && way < std::abs(to - from) / 3 && speed > 0;
     // What homing sets before and after a ramp has the same positions, but not such speeds.
     const bool is_set = speed == 2050 || speed == 4050 || speed == 5550 || speed == 1050;
-    if (!is_speeding_up || is_set) continue;
+    if (!is_on_ramp || is_set) continue;
     ++judged;
     const auto wanted = ramp_speed(acceleration, way);
-    board.about(fmt::format("j{} {} steps into its final move", joint + 1, way));
+    board.about(fmt::format("j{} {} steps {} its final move", joint + 1, way,
+                            part == Part::kBegin ? "into" : "before the end of"));
     board.expect_true(std::abs(speed - wanted) <= kTolerance * wanted + 20,
                       fmt::format("a speed of {:.0f} steps/s", wanted),
                       fmt::format("{} steps/s", speed));
@@ -71,8 +76,9 @@ void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int f
                     fmt::format("{} answers show it", judged));
 }
 
-void expect_final_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint) {
-  expect_ramp(board, homed, joint, 0, kHoming[joint].end, kHoming[joint].acceleration);
+void expect_final_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint,
+                       Part part = Part::kBegin) {
+  expect_ramp(board, homed, joint, 0, kHoming[joint].end, kHoming[joint].acceleration, part);
 }
 
 /// The first seek is that short or longer as the arm stood; the other two have their length.
@@ -182,6 +188,36 @@ constexpr Clause kClauses[] = {
              board.about("the first seek");
              expect_speed(board, {seeking.front(), seeking.back()}, joint, seek);
            }
+         }),
+
+    must("parol6.home.ramps-brake",
+         "The final moves of J1 to J5 brake with the accelerations with which they begin.",
+         "firmware, vectors S1 to S6"),
+    from(kHomed, Hazard::kObserve, "J1 to J5 braked as they should.",
+         [](BoardBench& board) {
+           for (const auto joint : {kJ1, kJ2, kJ3}) {
+             expect_final_ramp(board, kNoneHomed, joint, Part::kEnd);
+           }
+           expect_final_ramp(board, kFirstThreeHomed, kJ4, Part::kEnd);
+           expect_final_ramp(board, kFirstFourHomed, kJ5, Part::kEnd);
+         }),
+
+    must("parol6.home.waiting-speeds",
+         "A joint that waits for its turn reports its seek speed until then: J4 while J1 to J3 "
+         "home, "
+         "J5 and J6 until J4 is homed.",
+         "firmware; recordings"),
+    from(kHomed, Hazard::kObserve, "J4, J5 and J6 said their seek speeds while they waited.",
+         [](BoardBench& board) {
+           const auto run = record(board);
+           const auto expect_waiting = [&](std::uint8_t homed, std::size_t joint) {
+             board.about(fmt::format("while homed is {:02X}", homed));
+             for (const auto& answer : run.with_bits(homed)) {
+               board.expect(answer, speed_field(joint), kHoming[joint].seek);
+             }
+           };
+           for (const auto joint : {kJ4, kJ5, kJ6}) expect_waiting(kNoneHomed, joint);
+           for (const auto joint : {kJ5, kJ6}) expect_waiting(kFirstThreeHomed, joint);
          }),
 
     must("parol6.home.speeds-at-rest",

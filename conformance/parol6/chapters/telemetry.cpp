@@ -33,9 +33,9 @@ void expect_interval(BoardBench& board, const Answer& before, const Answer& afte
   const auto least = ticks_in(after.asked - before.received) * (1 - kClockError) - 1;
   const auto most = ticks_in(after.received - before.asked) * (1 + kClockError) + 1;
   const auto above_least = static_cast<std::uint16_t>(after.timing - static_cast<int>(least));
-  board.expect_true(above_least <= most - least + 1,
-                    fmt::format("timing of {:.0f} to {:.0f} ticks, modulo 65536", least, most),
-                    fmt::format("{} ticks", after.timing));
+  board.expect_in_time({static_cast<double>(above_least), 0, most - least + 1, "ticks"},
+                       fmt::format("timing of {:.0f} to {:.0f} ticks, modulo 65536", least, most),
+                       fmt::format("{} ticks", after.timing));
 }
 
 void expect_interval_after(BoardBench& board, Duration gap) {
@@ -122,6 +122,17 @@ constexpr Clause kClauses[] = {
          Profiles::kFirmware, "parol6.command.timeout-reported"),
     look("The timeout error is 100.",
          [](BoardBench& board) { board.expect(board.ask(idle()), "timeout_error", 100); }),
+    variant("asked-for", look("It is 100 with a timeout, kept or not.",
+                              [](BoardBench& board) {
+                                for (const int timeout : {1, 20, 100, 255}) {
+                                  auto frame = idle();
+                                  frame.timeout = static_cast<std::uint8_t>(timeout);
+                                  board.about(fmt::format("a timeout of {} ms", timeout));
+                                  board.expect(board.ask(frame), "timeout_error", 100);
+                                  board.pause(300ms);
+                                  board.expect(board.ask(frame), "timeout_error", 100);
+                                }
+                              })),
 
     must("parol6.telemetry.gripper-id", "The gripper id of telemetry is always 0.", "firmware",
          Profiles::kFirmware, "parol6.telemetry.gripper-id-echoed"),
@@ -225,6 +236,20 @@ constexpr Clause kClauses[] = {
                               before = answer;
                             }
                           })),
+
+    variant("any-code", from(kEnabled, Hazard::kState, "Frames of any code begin an interval.",
+                             [](BoardBench& board) {
+                               auto before = board.ask(idle());
+                               for (const int code : {42, 101, 102, 103, 101, 123, 156, 255}) {
+                                 board.pause(7ms);
+                                 auto frame = with_code(code);
+                                 frame.position = before.position;
+                                 const auto answer = board.ask(frame);
+                                 board.about(fmt::format("a frame of code {}", code));
+                                 expect_interval(board, before, answer);
+                                 before = answer;
+                               }
+                             })),
 
     must("parol6.telemetry.timing-wraps",
          "The timing field counts modulo 65536: a gap of 100 ms reads 4776 or 4777.",

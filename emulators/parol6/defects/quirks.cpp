@@ -58,6 +58,9 @@ constexpr Hear kGoalRelative = [](CommandFrame& frame, QuirkMemory&, const Board
     frame.position[j] = frame.position[j] + board.joints()[j].position();
   }
 };
+constexpr Hear kGoalOfSixteenBits = [](CommandFrame& frame, QuirkMemory&, const Board&) {
+  for (auto& goal : frame.position) goal = Steps{static_cast<std::int16_t>(goal.value)};
+};
 constexpr Hear kJ6DragsJ4 = [](CommandFrame& frame, QuirkMemory&, const Board&) {
   frame.speed[3] = frame.speed[3] + StepsPerSecond{frame.speed[5].value / 2};
 };
@@ -228,6 +231,7 @@ constexpr std::array kQuirks{
     hears("feed-negated", "Go-to law", kFeedNegated),
     hears("goal-twice-as-far", "Go-to law", kGoalFar),
     hears("goal-relative", "Go-to law", kGoalRelative),
+    hears("goal-16-bit", "Go-to law", kGoalOfSixteenBits),
     hears("outputs-swapped", "Inputs and outputs", kOutputsSwapped),
     hears("outputs-pulse", "Inputs and outputs", kOutputsPulse),
     hears("outputs-off-when-disabled", "Inputs and outputs", kOutputsOffWhenDisabled),

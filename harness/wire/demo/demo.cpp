@@ -92,6 +92,14 @@ void Splitter::drop_until_start() noexcept {
 std::span<const Field> request_fields() noexcept { return kRequestFields; }
 std::span<const Field> reply_fields() noexcept { return kReplyFields; }
 
+Dissection dissection() {
+  return {.messages = {{"request", Direction::kToDevice, kRequestFields},
+                       {"reply", Direction::kFromDevice, kReplyFields}},
+          .check =
+              "function(m) return m:byte(2) + m:byte(3) ~= 255 and "
+              "string.format('check: 0x%02X', m:byte(3)) or nil end"};
+}
+
 std::unique_ptr<Dissector> make_dissector() { return std::make_unique<DemoDissector>(); }
 
 }  // namespace armjig::demo

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "harness/core/bytes.hpp"
+#include "harness/wire/dissection.hpp"
 #include "harness/wire/dissector.hpp"
 #include "harness/wire/field.hpp"
 
@@ -46,5 +47,7 @@ class Splitter {
 [[nodiscard]] std::span<const Field> reply_fields() noexcept;
 
 [[nodiscard]] std::unique_ptr<Dissector> make_dissector();
+
+[[nodiscard]] Dissection dissection();
 
 }  // namespace armjig::demo

@@ -99,4 +99,26 @@ class LineDissector final : public Dissector {
 
 std::unique_ptr<Dissector> make_dissector() { return std::make_unique<LineDissector>(); }
 
+Dissection dissection() {
+  using enum LineFault;
+  std::vector<MessageKind> kinds;
+  for (std::size_t i = 0; i < kVerbNames.size(); ++i) {
+    const auto verb = static_cast<Verb>(i);
+    kinds.push_back({.name = to_string(verb),
+                     .direction = Direction::kToDevice,
+                     .fields = command_fields(verb),
+                     .bad_word = describe(names_objective(verb) ? kNotAnObjective : kNotAMode)});
+  }
+  for (const auto name : kEventNames) {
+    kinds.push_back({.name = name, .direction = Direction::kFromDevice, .fields = event_fields()});
+  }
+  kinds.push_back(
+      {.name = kHeartbeatName, .direction = Direction::kFromDevice, .fields = heartbeat_fields()});
+  return {.messages = std::move(kinds),
+          .framing = Framing::kLines,
+          .lines = {LineSplitter::kLongest, describe(kEmpty), describe(kUnknownWord),
+                    describe(kArgumentCount), describe(kNotANumber), describe(kNumberTooLarge),
+                    describe(kNoCarriageReturn), describe(kTooLong)}};
+}
+
 }  // namespace armjig::kinovazed

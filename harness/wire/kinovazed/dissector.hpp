@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "harness/wire/dissection.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig::kinovazed {
@@ -10,5 +11,7 @@ namespace armjig::kinovazed {
 /// Reads one connection with the eyes of the shipped server: commands to it, events and heartbeats
 /// from it, and every other line with what is wrong with it. How bytes are cut makes no difference.
 [[nodiscard]] std::unique_ptr<Dissector> make_dissector();
+
+[[nodiscard]] Dissection dissection();
 
 }  // namespace armjig::kinovazed

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "harness/wire/dissection.hpp"
 #include "harness/wire/dissector.hpp"
 
 namespace armjig::morap {
@@ -12,5 +13,7 @@ namespace armjig::morap {
 /// of a message is that of this byte, whatever `feed` is told. What was chosen to be read is
 /// remembered for every address, from the state after power-on. Bytes behind a message are noise.
 [[nodiscard]] std::unique_ptr<Dissector> make_dissector();
+
+[[nodiscard]] Dissection dissection();
 
 }  // namespace armjig::morap

@@ -69,8 +69,10 @@ class Lane {
 
   void emit_frame(std::vector<Message>& out) {
     const auto noise = pending_.size() - (kHeaderSize + payload_size_);
-    emit_pieces(noise, out);
-    emit_noise(noise % kNoisePiece, out);
+    if (noise > 0 || !fault_.empty()) {
+      emit_pieces(noise, out);
+      emit_noise(noise % kNoisePiece, out);
+    }
     out.push_back({direction_, time_, name_, std::exchange(pending_, {}), fields_, {}});
   }
 
@@ -120,5 +122,10 @@ class FrameDissector final : public Dissector {
 }  // namespace
 
 std::unique_ptr<Dissector> make_dissector() { return std::make_unique<FrameDissector>(); }
+
+Dissection dissection() {
+  return {.messages = {{"command", Direction::kToDevice, command_fields()},
+                       {"telemetry", Direction::kFromDevice, telemetry_fields()}}};
+}
 
 }  // namespace armjig::parol6

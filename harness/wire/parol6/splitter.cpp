@@ -90,7 +90,8 @@ Splitter::Step Splitter::step_direct(Bytes in) noexcept {
           fault->kind == FaultKind::kWrongLength ? candidate.first(kHeaderSize) : candidate;
       return {place + next_candidate(rejected), found};
     }
-    if (std::holds_alternative<Frame>(found)) return {place + frame_size_, found};
+    // Made here: copying what `judge` has just written would stall the processor.
+    if (std::holds_alternative<Frame>(found)) return {place + frame_size_, Frame{candidate}};
     hold(candidate);
     return {in.size(), {}};
   }

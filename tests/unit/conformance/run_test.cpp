@@ -18,7 +18,11 @@ using namespace std::chrono_literals;
 /// A device that is a number: cases look at it, start states set it.
 class NumberBench final : public Bench {
  public:
-  bool is_alive() override { return !is_dead; }
+  bool is_alive() override {
+    if (is_gibberish) fail("a number", "a letter");
+    return !is_dead && !is_gibberish;
+  }
+  bool can_restart() override { return !has_nobody; }
   void bring_to(std::size_t start) override {
     visited.push_back(start);
     if (stops_in_start-- > 0) {
@@ -30,8 +34,9 @@ class NumberBench final : public Bench {
   }
   void measure_noise() override {
     ++measured;
-    hear_noise(3us);
+    hear_noise(noise_here);
   }
+  [[nodiscard]] Duration longest_answer() const noexcept override { return 500ms; }
   using Bench::lose_link;
   [[nodiscard]] Instant now() const override { return at(1s * calls); }
   [[nodiscard]] std::string last_exchange() const override { return "the last exchange\n"; }
@@ -43,7 +48,11 @@ class NumberBench final : public Bench {
   std::vector<std::uint32_t> randoms;
   int calls = 0;
   int measured = 0;
+  Duration noise_here = 3us;
+  int late_answers = 0;  ///< of the next ones
   bool is_dead = false;
+  bool has_nobody = false;  ///< who could start it again
+  bool is_gibberish = false;
   bool leaves_beyond_open = false;
   bool obeys_firmware = true;
   Duration missed{};       ///< in which it did not run
@@ -83,13 +92,23 @@ void is_late(Bench& bench) {
   device.missed += 3s;
   bench.fail_by_silence("an answer in time", "one 3 s later");
 }
+void answers_in_time(Bench& bench) {
+  auto& device = number(bench);
+  const auto is_late = device.late_answers-- > 0;
+  device.ran.emplace_back(is_late ? "late" : "in time");
+  device.expect_in_time({is_late ? 700.0 : 120.0, 0, 500, "ms"}, "0 to 500 ms", "another time");
+}
 void dies(Bench& bench) {
   number(bench).is_dead = true;
   bench.fail_by_silence("an answer", "silence");
 }
 void loses_link(Bench& bench) { number(bench).lose_link({ErrorCode::kDisconnected, 0}); }
 void is_quiet_once(Bench& bench) { bench.fail_by_silence("an answer", "silence"); }
-void skips(Bench& bench) { bench.skip("no hand"); }
+void crashes(Bench& bench) { number(bench).ran.emplace_back("crashes"); }
+void skips(Bench& bench) {
+  if (number(bench).stops_left-- > 0) number(bench).missed += 3s;
+  bench.skip("no hand");
+}
 void breaks_document(Bench& bench) { bench.fail("what the document says", "something else"); }
 void obeys_firmware(Bench& bench) {
   if (!number(bench).obeys_firmware) bench.fail("what the firmware does", "something else");
@@ -135,6 +154,17 @@ const Chapter kChapters[] = {{"Numbers",
                               {std::begin(kRequirements), std::end(kRequirements)},
                               {std::begin(kCases), std::end(kCases)}}};
 const Suite kSuite{"n", "7", kChapters, kStarts};
+
+constexpr Requirement kPrompt[] = {{"n.prompt", Level::kMust, "It is prompt.", "here"}};
+constexpr Case kPromptCases[] = {{.requirement = "n.prompt", .rule = "r", .run = answers_in_time}};
+const Chapter kPromptChapters[] = {{"Moments",
+                                    {std::begin(kPrompt), std::end(kPrompt)},
+                                    {std::begin(kPromptCases), std::end(kPromptCases)}}};
+const Suite kPromptSuite{"n", "7", kPromptChapters, kStarts};
+
+Report run_prompt(NumberBench& bench, const RunOptions& options = {}) {
+  return run_suite(kPromptSuite, bench, options, [](const ReportRow&) {});
+}
 
 Report run(NumberBench& bench, const std::string& filter, RunOptions options = {}) {
   options.selection.filter = filter;
@@ -226,6 +256,139 @@ TEST(ConformanceRun, SkipsWhatIsNotAllowed) {
   EXPECT_EQ(conclusion_of(report), Conclusion::kNothing);
 }
 
+constexpr Requirement kFatal[] = {{"d.crash", Level::kMust, "It ends.", "here"},
+                                  {"d.look", Level::kMust, "It looks.", "here"},
+                                  {"d.hand", Level::kMust, "It feels.", "here"},
+                                  {"d.none", Level::kMust, "It dreams.", "here"},
+                                  {"d.should", Level::kShould, "It may.", "here"}};
+constexpr Case kFatalCases[] = {
+    {.requirement = "d.crash", .rule = "r", .run = crashes, .hazard = Hazard::kCrash},
+    {.requirement = "d.look", .rule = "r", .run = passes, .start = 1},
+    {.requirement = "d.hand", .rule = "r", .run = skips},
+    {.requirement = "d.should", .rule = "r", .run = passes_too},
+};
+const Chapter kFatalChapters[] = {{"Ends",
+                                   {std::begin(kFatal), std::end(kFatal)},
+                                   {std::begin(kFatalCases), std::end(kFatalCases)}}};
+const Suite kFatalSuite{"d", "1", kFatalChapters, kStarts};
+
+Report run_fatal(NumberBench& bench, RunOptions options = {}) {
+  options.permissions = Permissions::all();
+  return run_suite(kFatalSuite, bench, options, [](const ReportRow&) {});
+}
+
+/// On a real link, where a sound device is as late as that.
+RunOptions beside(int late_answers, Duration noise = 2ms) {
+  RunOptions options;
+  options.reference = [=] {
+    auto sound = std::make_shared<NumberBench>();
+    sound->late_answers = late_answers;
+    sound->noise_here = noise;
+    return sound;
+  };
+  return options;
+}
+
+TEST(ConformanceRun, TakesNoMoreForTheLinksOwnThanALinkOfItsKindHas) {
+  NumberBench bench;
+  bench.noise_here = 1900ms;
+  const auto report = run(bench, "n.pass", beside(0));
+  EXPECT_EQ(bench.heard_noise(), 1900ms);
+  EXPECT_EQ(bench.noise(), 502ms) << "what binds the device, and the link";
+  EXPECT_EQ(bench.link_noise(), 2ms);
+  EXPECT_THAT(report.facts, testing::Contains(testing::Pair("an emulated device's answers in",
+                                                            "2000 us at most")));
+}
+
+TEST(ConformanceRun, TakesNothingForTheLinksInVirtualTime) {
+  NumberBench bench;
+  bench.noise_here = 20ms;
+  (void)run(bench, "n.pass");
+  EXPECT_EQ(bench.noise(), 20ms);
+  EXPECT_EQ(bench.link_noise(), 0ms);
+}
+
+TEST(ConformanceRun, AccusesNobodyOfAMomentThatIsNotMissedAgain) {
+  NumberBench bench;
+  bench.late_answers = 1;
+  const auto report = run_prompt(bench, beside(0));
+  EXPECT_THAT(verdicts(report), ElementsAre("n.prompt pass"));
+  EXPECT_THAT(bench.ran, ElementsAre("late", "in time", "in time"));
+  EXPECT_THAT(report.rows.front().actual, HasSubstr("once expected 0 to 500 ms"));
+}
+
+TEST(ConformanceRun, AccusesADeviceThatIsLateWhereAnEmulatedOneIsNot) {
+  NumberBench bench;
+  bench.late_answers = 2;
+  EXPECT_THAT(verdicts(run_prompt(bench, beside(0))), ElementsAre("n.prompt fail"));
+}
+
+TEST(ConformanceRun, LeavesOpenWhatAnEmulatedDeviceOnSuchALinkMissesAsWell) {
+  NumberBench bench;
+  bench.late_answers = 2;
+  const auto report = run_prompt(bench, beside(1));
+  ASSERT_THAT(verdicts(report), ElementsAre("n.prompt inconclusive"));
+  EXPECT_THAT(report.rows.front().actual, HasSubstr("an emulated device on such a link"));
+}
+
+TEST(ConformanceRun, SaysHowNearToItsBoundsAPassWas) {
+  NumberBench bench;
+  EXPECT_EQ(run_prompt(bench).rows.front().margin, "120.0 of 0.0 to 500.0 ms");
+}
+
+TEST(ConformanceRun, RunsLastWhatEndsTheDevicesProgram) {
+  NumberBench bench;
+  (void)run_fatal(bench);
+  EXPECT_THAT(bench.ran, ElementsAre("passes too", "passes", "crashes"));
+}
+
+TEST(ConformanceRun, EndsNoProgramThatNobodyStartsAgain) {
+  NumberBench bench;
+  bench.has_nobody = true;
+  const auto report = run_fatal(bench);
+  EXPECT_THAT(bench.ran, ElementsAre("passes too", "passes"));
+  EXPECT_THAT(report.rows.back().actual, HasSubstr("--restart"));
+}
+
+TEST(ConformanceRun, SaysWhichShareOfTheMustRequirementsItJudged) {
+  NumberBench bench;
+  const auto coverage = run_fatal(bench).coverage.value();
+  EXPECT_EQ(coverage.all, 4U) << "a should is none";
+  EXPECT_EQ(coverage.judged, 2U);
+  EXPECT_EQ(coverage.within, 2U) << "a hand is missing, and one has no case";
+  EXPECT_EQ(coverage.judged_within, 2U);
+}
+
+TEST(ConformanceRun, FailsIfTooLittleWasJudged) {
+  NumberBench bench;
+  int asked = 0;
+  const auto stops = [&asked] { return ++asked > 6; };
+  const auto report = run_fatal(bench, {.must_stop = stops, .is_time_up = [] { return true; }});
+  EXPECT_EQ(report.rows.back().name, "d.judged");
+  EXPECT_EQ(report.rows.back().verdict, Verdict::kFail);
+  EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
+  EXPECT_THAT(verdicts(report), testing::Contains("d.crash skipped"));
+  NumberBench other;
+  asked = 0;
+  EXPECT_EQ(
+      conclusion_of(run_fatal(
+          other, {.required_share = 0, .must_stop = stops, .is_time_up = [] { return true; }})),
+      Conclusion::kPassed);
+  NumberBench interrupted;
+  asked = 0;
+  EXPECT_EQ(conclusion_of(run_fatal(interrupted, {.must_stop = stops})), Conclusion::kPassed)
+      << "who interrupts knows that it is not whole";
+}
+
+TEST(ConformanceRun, AnswersThatAreNotUnderstoodAreAFinding) {
+  NumberBench bench;
+  bench.is_gibberish = true;
+  const auto report = run(bench, "n.pass");
+  EXPECT_THAT(verdicts(report), ElementsAre("n.alive fail", "n.pass skipped"));
+  EXPECT_EQ(report.rows[0].actual, "a letter");
+  EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
+}
+
 TEST(ConformanceRun, TellsATargetThatDiedFromOneThatFails) {
   EXPECT_THAT(verdicts(run("n.quiet")), ElementsAre("n.quiet fail")) << "it answers afterwards";
   EXPECT_THAT(verdicts(run("n.d")), ElementsAre("n.alive error", "n.dies error"));
@@ -265,6 +428,14 @@ TEST(ConformanceRun, StartsACaseAgainThatItDidNotWatch) {
   EXPECT_EQ(bench.ran.size(), 3U) << "two runs count";
   EXPECT_EQ(report.facts.back().first, "stopped");
   EXPECT_THAT(report.facts.back().second, HasSubstr("3.000 s"));
+}
+
+TEST(ConformanceRun, SkipsWhatNeedsAHandAlsoIfItDidNotWatch) {
+  NumberBench bench;
+  bench.stops_left = 9;
+  const auto report = run(bench, "n.skips", {.missed = [&bench] { return bench.missed; }});
+  EXPECT_THAT(verdicts(report), ElementsAre("n.skips skipped"));
+  EXPECT_EQ(report.rows.front().actual, "no hand");
 }
 
 TEST(ConformanceRun, LeavesACaseOpenThatItNeverWatches) {

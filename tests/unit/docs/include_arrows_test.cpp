@@ -28,9 +28,11 @@ constexpr Room kRooms[] = {
     {"harness/wire", "harness/core"},
     {"harness/files", "harness/core"},
     {"harness/capture", "harness/core harness/wire harness/files"},
+    {"harness/foreign", "harness/core harness/wire harness/files harness/capture"},
     {"harness/arm", "harness/core harness/wire"},
     {"harness/urdf", "harness/core harness/files harness/arm"},
     {"harness/config", "harness/core harness/files"},
+    {"harness/compare", "harness/core harness/wire harness/files harness/capture harness/config"},
     {"harness/link", "harness/core"},
     {"harness/timing", "harness/core"},
     {"harness/motion", "harness/core harness/wire harness/arm"},
@@ -39,7 +41,7 @@ constexpr Room kRooms[] = {
      "harness/core harness/wire harness/arm harness/config harness/link harness/timing "
      "harness/motion"},
     {"harness/rig", "harness/core harness/wire harness/capture harness/link harness/report"},
-    {"harness/summary", "harness/core harness/wire harness/capture harness/timing"},
+    {"harness/summary", "harness/core harness/wire harness/capture harness/timing harness/report"},
     {"harness/script",
      "harness/core harness/wire harness/arm harness/motion harness/report harness/drive "
      "harness/rig"},
@@ -58,10 +60,10 @@ constexpr Room kRooms[] = {
     {"emulators/sessions",
      "harness/core harness/wire emulators/kinovazed emulators/morap emulators/parol6"},
     {"emulators/replay",
-     "harness/core harness/wire harness/capture emulators/demo emulators/i2c emulators/kinovazed "
-     "emulators/morap emulators/parol6"},
+     "harness/core harness/wire harness/capture harness/link emulators/demo emulators/i2c "
+     "emulators/kinovazed emulators/morap emulators/parol6"},
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
-    {"emulators/host", "harness/core harness/link harness/timing emulators/memory"},
+    {"emulators/host", "harness/core harness/wire harness/link harness/timing emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},
     {"conformance/kinovazed/mutants.cpp", "conformance emulators/kinovazed"},
     {"conformance/morap/mutants.cpp", "conformance emulators/morap"},

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -32,6 +33,8 @@ constexpr int kNoFilter = 5;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kIsSanitized = true;  // and makes system calls of its own
+#elif defined(__has_feature)
+constexpr bool kIsSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
 #else
 constexpr bool kIsSanitized = false;
 #endif
@@ -82,18 +85,53 @@ int run_rounds(test::LinkEnds ends) {
   ::_exit(test::allocations() == before ? 0 : kAllocated);  // closing files is not allowed
 }
 
+/// A path behind a guard on one end of a link.
+struct PathOnEnd {
+  explicit PathOnEnd(test::LinkEnds ends)
+      : port{std::move(
+            *GuardedStream::guard(std::make_unique<DescriptorStream>(
+                                      std::move(ends.near), DescriptorStream::Put{write_all}),
+                                  demo::rig::make_judge(), {}))},
+        far{std::move(ends.far)} {}
+
+  std::unique_ptr<GuardedStream> port;
+  Descriptor far;
+  DirectLine line = direct_line(*port, {}).value();
+  std::unique_ptr<Path> path = path_on(*port, line);
+};
+
+constexpr std::array kQuery{std::byte{0xA5}, std::byte{'q'}, std::byte{0x8E}};
+
 TEST(PathOnAFile, SendsNothingThatTheGuardHasNotAdmitted) {
-  auto ends = test::make_socket_ends();
-  const DescriptorStream::Put put = write_all;
-  const auto port = GuardedStream::guard(
-      std::make_unique<DescriptorStream>(std::move(ends.near), put), demo::rig::make_judge(), {});
-  const auto path = path_on(**port, direct_line(**port, {}).value());
+  const PathOnEnd end{test::make_socket_ends()};
   const std::array start{std::byte{0xA5}, std::byte{'s'}, std::byte{0x8C}};
-  EXPECT_EQ(path->announce(start).error().code, ErrorCode::kForbidden) << "it moves";
-  EXPECT_EQ(path->send(start).error().code, ErrorCode::kForbidden);
+  EXPECT_EQ(end.path->announce(start).error().code, ErrorCode::kForbidden) << "it moves";
+  EXPECT_EQ(end.path->send(start).error().code, ErrorCode::kForbidden);
   std::array<std::byte, 16> came{};
   // Only the judge's opening bytes, two zeros.
-  EXPECT_EQ(::read(ends.far.value(), came.data(), came.size()), 2);
+  EXPECT_EQ(::read(end.far.value(), came.data(), came.size()), 2);
+}
+
+TEST(PathOnAFile, TellsWhenTheKernelHandedARequestToATcpLink) {
+  const PathOnEnd end{test::make_tcp_ends()};
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(end.path->announce(kQuery));
+    const auto before = end.path->now();
+    const auto left = end.path->time_send(kQuery);
+    ASSERT_TRUE(left);
+    ASSERT_TRUE(*left) << "no stamp";
+    EXPECT_GE(**left, Duration{});
+    EXPECT_LE(**left, end.path->now() - before);
+    // Nothing is left that would wake who waits for an answer.
+    pollfd entry{.fd = end.line.descriptor, .events = POLLIN, .revents = 0};
+    EXPECT_EQ(::poll(&entry, 1, 0), 0);
+  }
+}
+
+TEST(PathOnAFile, DoesNotKnowWhenSomethingLeavesATerminal) {
+  const PathOnEnd end{test::make_terminal_ends()};
+  ASSERT_TRUE(end.path->announce(kQuery));
+  EXPECT_FALSE(end.path->time_send(kQuery).value());
 }
 
 class MeasuredPath : public testing::TestWithParam<test::LinkEnds (*)()> {};

@@ -24,7 +24,7 @@ class ScriptedCapture final : public CaptureReader {
   /// Members of records; on a bus acknowledge letters.
   void set_details(std::string details) { entries_.back().details = std::move(details); }
 
-  [[nodiscard]] CaptureFormat format() const noexcept override { return CaptureFormat::kLines; }
+  [[nodiscard]] std::string_view format() const noexcept override { return "scripted"; }
   [[nodiscard]] Outcome<bool> next(CaptureRecord& record) override {
     if (next_ == entries_.size()) return false;
     const auto& entry = entries_[next_++];

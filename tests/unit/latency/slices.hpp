@@ -13,7 +13,7 @@
 
 namespace armjig::test {
 
-/// So many slices of a second, in virtual time, at 100 requests a second.
+/// So many slices of a quarter of a second, in virtual time, at 100 requests a second.
 inline std::vector<Slice> slices_of(std::size_t count, DelayedEcho::Delay delay) {
   MemoryStream<DelayedEcho> port{DelayedEcho{std::move(delay)}};
   EchoProbe probe;
@@ -22,7 +22,7 @@ inline std::vector<Slice> slices_of(std::size_t count, DelayedEcho::Delay delay)
   std::vector<Slice> slices;
   while (slices.size() < count) {
     const auto before = meter.measured().trips.size();
-    if (!meter.run({.time = std::chrono::seconds{1}})) return {};
+    if (!meter.run({.time = std::chrono::milliseconds{250}})) return {};
     slices.push_back(slice_of(std::span{meter.measured().trips}.subspan(before)));
   }
   return slices;

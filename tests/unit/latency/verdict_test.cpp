@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "emulators/parol6/arm.hpp"
 #include "harness/latency/latency_run.hpp"
 #include "harness/latency/load.hpp"
+#include "harness/latency/parol6_probe.hpp"
+#include "harness/link/impaired_stream.hpp"
 #include "harness/link/memory_stream.hpp"
 #include "harness/timing/histogram_log.hpp"
 #include "tests/unit/latency/delayed_echo.hpp"
@@ -79,7 +83,7 @@ TEST(LoadPlan, IsReadOrRefused) {
 
 std::vector<Slice> slices_of(std::uint64_t seed, double slower, Duration added) {
   test::Dice dice{seed};
-  return test::slices_of(60, [&](auto) {
+  return test::slices_of(240, [&](auto) {
     const auto delay = static_cast<double>(dice.between(800'000, 1'200'000)) * slower;
     return Duration{static_cast<Duration::rep>(delay)} + added;
   });
@@ -96,6 +100,18 @@ TEST(Against, FlagsATenthAndTwentyMicrosecondsMoreAndNotTheSame) {
   EXPECT_EQ(verdict(slices_of(5, 0.9, 0ns)), Difference::kFaster);
   EXPECT_EQ(compare_alternated(std::span{first}.first(9), first, 1).difference,
             Difference::kUnclear);
+}
+
+TEST(Against, FlagsTwentyMicrosecondsAlsoIfTheMachineWasBusyInAFewSlices) {
+  auto first = slices_of(1, 1, 0ns);
+  auto second = slices_of(2, 1, 20us);
+  auto same = slices_of(3, 1, 0ns);
+  for (const std::size_t i : {5U, 17U, 40U}) {
+    first[i] = {3ms, 4ms};
+    same[i + 1] = second[i + 1] = {2ms, 3ms};
+  }
+  EXPECT_EQ(compare_alternated(first, second, 1).difference, Difference::kSlower);
+  EXPECT_EQ(compare_alternated(first, same, 1).difference, Difference::kNone);
 }
 
 LatencyRun run_of(Duration delay) {
@@ -161,6 +177,43 @@ TEST(Blame, IsTheHostsIfTheSentinelOversleptInThatStretch) {
   EXPECT_THAT(blame_of(outlier, run), HasSubstr("device or link")) << "that was before";
   run.witness->oversleeps = {{at(1001ms), 99ms}};
   EXPECT_THAT(blame_of(outlier, run), testing::StartsWith("host"));
+}
+
+/// Whom the worst is blamed on, of a board whose link stands still for 5 ms now and then.
+std::string blamed_behind(const char* impairment) {
+  ImpairedStream port{
+      std::make_unique<MemoryStream<parol6::emulation::Arm>>(parol6::emulation::Arm{}),
+      parse_impairment(impairment).value()};
+  const auto probe = parol6::latency::make_probe(port, "").value();
+  const auto path = path_through(port);
+  Meter meter{*path, *probe, {}, [] { return false; }};
+  EXPECT_TRUE(meter.run({.count = 1'000}).value());
+  LatencyRun run{.measured = meter.measured()};
+  EXPECT_GT(run.measured.outliers.front().trip.duration, 5ms);
+  return blame_of(run.measured.outliers.back(), run);
+}
+
+TEST(Blame, TellsTheWayToADeviceThatCountsTimeFromAllElse) {
+  EXPECT_THAT(blamed_behind("out.stall=1%:5ms,seed=4"), testing::StartsWith("link"));
+  EXPECT_THAT(blamed_behind("in.stall=1%:5ms,seed=4"),
+              testing::StartsWith("device, or the link from it"));
+}
+
+TEST(LatencyReport, OpensTheWorstFromTheirDots) {
+  auto first = run_of(2ms);
+  first.name = "rate=50";
+  auto second = run_of(1ms);
+  second.name = "rate=100";
+  const auto one = to_html(report_of(run_of(2ms)));
+  const auto both = to_html(report_of(std::vector{first, second}));
+  for (const auto* row : {"worst-1", "worst-5"}) {
+    EXPECT_THAT(one, HasSubstr(fmt::format("href=\"#{}\"", row)));
+    EXPECT_THAT(one, HasSubstr(fmt::format("<tr id=\"{}\">", row)));
+  }
+  for (const auto* row : {"worst-rate-50-1", "worst-rate-100-5"}) {
+    EXPECT_THAT(both, HasSubstr(fmt::format("href=\"#{}\"", row)));
+    EXPECT_THAT(both, HasSubstr(fmt::format("<tr id=\"{}\">", row)));
+  }
 }
 
 TEST(LatencyReport, HasTheVerdictInItsFirstLines) {

@@ -183,6 +183,20 @@ TEST_F(Doctor, NoPseudoTerminalsAreAProblem) {
   expect("pseudo-terminals", State::kProblem, "devpts");
 }
 
+TEST_F(Doctor, AdvisesToTeachWiresharkOurDevices) {
+  EXPECT_TRUE(is_well()) << "it is not installed";
+  write("/usr/bin/tshark", "");
+  expect("Wireshark", State::kAdvice, "armjig wireshark install");
+  system_.home = "/home/user";
+  write("/home/user/.local/lib/wireshark/plugins/armjig_parol6.lua", "");
+  EXPECT_TRUE(is_well());
+  remove("/home");
+  write("/usr/lib/x86_64-linux-gnu/wireshark/plugins/other.lua", "");
+  EXPECT_FALSE(is_well());
+  write("/usr/lib/x86_64-linux-gnu/wireshark/plugins/armjig_parol6.lua", "");
+  EXPECT_TRUE(is_well());
+}
+
 TEST(DoctorOfThisMachine, AnswersEachCheck) {
   std::set<std::string_view> checks;
   for (const auto& finding : examine(this_system(), kBoards)) {
@@ -190,7 +204,7 @@ TEST(DoctorOfThisMachine, AnswersEachCheck) {
     EXPECT_FALSE(finding.text.empty());
     EXPECT_EQ(finding.fix.empty(), finding.state == State::kOk) << finding.check;
   }
-  EXPECT_EQ(checks.size(), 9U);
+  EXPECT_EQ(checks.size(), 10U);
 }
 
 TEST(UdevRules, NameEachKnownBoard) {

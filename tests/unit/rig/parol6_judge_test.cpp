@@ -452,6 +452,22 @@ TEST(Parol6Judge, ABoundThatIsReachedWhileJoggingStops) {
   EXPECT_EQ(court->must_stop(), "j3 reached its bound");
 }
 
+TEST(Parol6Judge, AJointThatLeavesItsRangeStopsWhateverItWasTold) {
+  for (const auto& frame : {go_to(kMiddle), jog(2, 100)}) {
+    Court court{Permissions::all()};
+    court.answer(homed(Command::kIdle));
+    ASSERT_FALSE(court.judge(frame));
+    auto position = kMiddle;
+    position[0] = kJointBounds[0].upper + Steps{400};
+    court.answer(homed_at(position, frame.command));
+    EXPECT_THAT(court->must_stop().value_or(""), HasSubstr("j1 is at"));
+    EXPECT_EQ(court->matter_of_stop(), Refusal::Matter::kAstray);
+    position[0] = position[0] - Steps{10};
+    court.answer(homed_at(position, frame.command));
+    EXPECT_FALSE(court->must_stop()) << "it comes back";
+  }
+}
+
 TEST(Parol6Judge, NothingMayMoveWhenFiftyFramesInARowHaveNoAnswer) {
   Court court{Permissions::all()};
   for (int i = 0; i < 50; ++i) ASSERT_FALSE(court.judge(Command::kJog)) << i;

@@ -122,5 +122,22 @@ TEST_F(SessionGuard, EndsTheHalfSentLineOfALostConnection) {
   EXPECT_THAT(notes, ElementsAre("connect", "      MoveJoy", "close", "connect", ";"));
 }
 
+TEST_F(SessionGuard, PutsNothingIntoALineThatComesInPieces) {
+  open({});
+  EXPECT_TRUE(send("ESto"));
+  EXPECT_TRUE(send("p\r\n"));
+  EXPECT_THAT(notes, ElementsAre("connect", "ESto", "p;"));
+}
+
+TEST_F(SessionGuard, LeavesARestThatCannotBecomeACommandToTheNextClient) {
+  open({});
+  const std::string junk(128, 'B');
+  EXPECT_TRUE(send(junk));
+  port->close();
+  ASSERT_TRUE(port->connect({}));
+  EXPECT_TRUE(send("EStop\r\n"));
+  EXPECT_THAT(notes, ElementsAre("connect", junk, "close", "connect", "EStop;"));
+}
+
 }  // namespace
 }  // namespace armjig

@@ -2,6 +2,7 @@
 // The KinovaZED suite against the emulated servers, sound and faulty.
 #include "conformance/kinovazed/suite.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,6 +54,30 @@ TEST(KinovazedSuite, TakesEitherOrderWhereItIsNotGiven) {
 
 TEST(KinovazedSuite, PassesOnAServerWithASlowArm) {
   EXPECT_THAT(but_passed(run("emulated:?call-us=2000")), testing::IsEmpty());
+}
+
+TEST(KinovazedSuite, AccusesNoServerWhoseArmTakesUpTo19MsACall) {
+  using armjig::Profile;
+  for (const auto profile : {Profile::kFirmware, Profile::kDocumented}) {
+    for (const auto* call_us : {"3000", "5000", "10000", "19000"}) {
+      const auto target =
+          fmt::format("emulated:?profile={}&call-us={}", to_string(profile), call_us);
+      const auto report = run(target, {.profile = profile});
+      EXPECT_EQ(conclusion_of(report), Conclusion::kPassed) << target;
+      // Two moments of a fast server cannot be hit.
+      EXPECT_LE(but_passed(report).size(), 2U) << testing::PrintToString(but_passed(report));
+    }
+  }
+}
+
+TEST(KinovazedSuite, FindsAServerSlowFromItsFirstAnswerOnThatNoLinkExcuses) {
+  RunOptions options;
+  options.selection.filter = "kinovazed.time.answer.stopped";
+  EXPECT_THAT(but_passed(run("emulated:?call-us=40000", options)), testing::IsEmpty());
+  const auto slow = run("emulated:?call-us=150000", options);
+  ASSERT_THAT(but_passed(slow), testing::SizeIs(1));
+  EXPECT_EQ(slow.rows.front().verdict, Verdict::kFail);
+  EXPECT_THAT(slow.rows.front().expected, testing::HasSubstr("0 to 500 ms"));
 }
 
 TEST(KinovazedSuite, PassesOnTheDocumentedServer) {

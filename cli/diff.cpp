@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/diff.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/device.hpp"
+#include "cli/foreign_options.hpp"
+#include "cli/outputs.hpp"
+#include "harness/capture/message_json.hpp"
+#include "harness/compare/recording_diff.hpp"
+#include "harness/compare/rules.hpp"
+#include "harness/report/report.hpp"
+#include "harness/report/wording.hpp"
+#include "harness/wire/append_text.hpp"
+
+namespace armjig::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Differences = std::vector<RecordingDifference>;
+
+constexpr auto kHelp =
+    "Aligns two recordings, message by message, and says what differs, field by field.\n"
+    "\n"
+    "  armjig diff yesterday.pcapng today.pcapng\n"
+    "  armjig diff a.jsonl b.pcapng --rules rules.toml     what may differ\n"
+    "  armjig diff a.jsonl b.jsonl --html diff.html        side by side\n"
+    "\n"
+    "Messages are compared with those of the same direction and connection. They are changed,\n"
+    "missing, extra or moved.";
+
+struct Options {
+  std::string before;
+  std::string after;
+  ComparisonOptions comparison;
+  ForeignOptions foreign;
+};
+
+Outcome<void> read_messages(const std::string& path, const ForeignHow& how,
+                            RecordedMessages& messages) {
+  const auto reader = open_recording(path, how);
+  if (!reader) return tl::unexpected{reader.error()};
+  auto read = for_each_record(**reader, [&](const CaptureRecord& record) {
+    return messages.add(record).map_error(
+        [&path](const Problem& wrong) { return Problem{wrong.code, path, wrong.hint}; });
+  });
+  messages.finish();
+  print_warning_of(**reader);
+  return read;
+}
+
+std::string text_of(const RecordedMessage* message) {
+  if (message == nullptr) return {};
+  std::string text;
+  append_content(text, message->message);
+  if (!message->note.empty()) text += fmt::format(" {{{}}}", message->note);
+  return wording::line(text);
+}
+
+std::string seconds_of(const RecordedMessage* message) {
+  if (message == nullptr) return {};
+  return fmt::format("{:.6f}", wording::seconds(message->message.time.time_since_epoch()));
+}
+
+/// How often each field, or `time`, `note` and `bytes`, differs.
+std::map<std::string, std::size_t> by_field(const Differences& found) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& one : found) {
+    for (const auto& what : one.what) ++counts[what.substr(0, what.find(':'))];
+  }
+  return counts;
+}
+
+std::string summary_of(const Differences& found) {
+  std::string text;
+  for (const auto change : {Change::kChanged, Change::kMissing, Change::kExtra, Change::kMoved}) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
+                        std::ranges::count(found, change, &RecordingDifference::change),
+                        to_string(change));
+  }
+  return text;
+}
+
+void print_text(const Differences& found) {
+  constexpr std::size_t kMostShown = 100;
+  for (const auto& one : std::span{found}.first(std::min(found.size(), kMostShown))) {
+    fmt::print("{:>12} s {} {}\n", seconds_of(one.before != nullptr ? one.before : one.after),
+               to_string(one.change), wording::line(one.lane));
+    if (one.before != nullptr) fmt::print("  before {}\n", text_of(one.before));
+    if (one.after != nullptr) fmt::print("  after  {}\n", text_of(one.after));
+    for (const auto& what : one.what) fmt::print("    {}\n", wording::line(what));
+  }
+  if (found.size() > kMostShown) fmt::print("and {} more\n", found.size() - kMostShown);
+  for (const auto& [field, count] : by_field(found)) {
+    fmt::print("{:>8} times {}\n", count, wording::line(field));
+  }
+  fmt::print("{}\n", found.empty() ? "equal" : "different: " + summary_of(found));
+}
+
+void print_json(const Differences& found) {
+  const auto message_of = [](const RecordedMessage& message) {
+    auto json = message_object<Json>(message.message);
+    if (!message.note.empty()) json["note"] = message.note;
+    return json;
+  };
+  Json json{{"schema", "armjig.diff/1"}, {"equal", found.empty()}, {"fields", Json::object()}};
+  for (const auto& [field, count] : by_field(found)) json["fields"][field] = count;
+  json["differences"] = Json::array();
+  for (const auto& one : found) {
+    Json entry{{"change", to_string(one.change)}, {"lane", one.lane}, {"what", one.what}};
+    if (one.before != nullptr) entry["before"] = message_of(*one.before);
+    if (one.after != nullptr) entry["after"] = message_of(*one.after);
+    json["differences"].push_back(std::move(entry));
+  }
+  fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Report page_of(const Compared& compared, const Differences& found) {
+  const auto& before = compared.before;
+  const auto& after = compared.after;
+  constexpr std::size_t kMostRows = 5'000;
+  Report page;
+  page.title = wording::line(fmt::format("{} and {}", before, after));
+  page.facts.emplace_back("result", found.empty() ? "equal" : summary_of(found));
+  if (found.size() > kMostRows) {
+    page.facts.emplace_back("shown", fmt::format("the first {} differences", kMostRows));
+  }
+  auto& sides = page.sections.emplace_back();
+  sides.title = "Side by side";
+  sides.table.columns = {"change", "link", "s", before, "s", after, "differs"};
+  for (const auto& one : std::span{found}.first(std::min(found.size(), kMostRows))) {
+    std::string what;
+    for (const auto& part : one.what) what += (what.empty() ? "" : "; ") + part;
+    sides.table.rows.push_back({std::string{to_string(one.change)}, one.lane,
+                                seconds_of(one.before), text_of(one.before), seconds_of(one.after),
+                                text_of(one.after), what});
+  }
+  auto& fields = page.sections.emplace_back();
+  fields.title = "By field";
+  fields.table.columns = {"field", "times"};
+  for (const auto& [field, count] : by_field(found)) {
+    fields.table.rows.push_back({field, std::to_string(count)});
+  }
+  return page;
+}
+
+}  // namespace
+
+Exit tell(const Differences& found, const Compared& compared, bool wants_json, const Output& html) {
+  wants_json ? print_json(found) : print_text(found);
+  if (html) html->put(to_html(page_of(compared, found)));
+  if (compared.messages == 0) return Exit::kNothing;
+  return found.empty() ? Exit::kPassed : Exit::kFindings;
+}
+
+std::function<MakeDissector(std::string_view)> dissectors_of(Devices devices) {
+  return [devices](std::string_view name) -> MakeDissector {
+    const auto* const device = find_recorded_device(devices, name);
+    return device == nullptr ? nullptr : device->make_dissector;
+  };
+}
+
+Outcome<ComparisonRules> rules_of(const std::string& path) {
+  return path.empty() ? Outcome<ComparisonRules>{ComparisonRules{}} : ComparisonRules::read(path);
+}
+
+namespace {
+
+Exit compare(Devices devices, const Options& options) {
+  const auto refuse = [](const Problem& problem) {
+    (void)report(problem);
+    return Exit::kUsage;
+  };
+  const auto rules = rules_of(options.comparison.rules);
+  if (!rules) return refuse(rules.error());
+  if (options.before == "-" && options.after == "-") {
+    return refuse({ErrorCode::kBadValue, "B", "standard input can be read only once"});
+  }
+  const auto how = foreign_how(devices, options.foreign, {});
+  if (!how) return refuse(how.error());
+  const auto files = open_outputs({{"--html", options.comparison.html}});
+  if (!files) return report(files.error());
+  const auto find_dissector = dissectors_of(devices);
+  RecordedMessages before{find_dissector};
+  RecordedMessages after{find_dissector};
+  if (const auto read = read_messages(options.before, *how, before); !read) {
+    return refuse(read.error());
+  }
+  if (const auto read = read_messages(options.after, *how, after); !read) {
+    return refuse(read.error());
+  }
+  const auto found = diff(before, after, *rules);
+  return tell(found, {options.before, options.after, before.count() + after.count()},
+              options.comparison.wants_json, files->front());
+}
+
+}  // namespace
+
+void add_comparison_options(CLI::App& app, ComparisonOptions& options) {
+  app.add_option("--rules", options.rules, "what may differ, TOML (docs/captures.md)")
+      ->type_name("FILE");
+  app.add_flag("--json", options.wants_json, "one JSON object (docs/schemas)");
+  app.add_option("--html", options.html, "a page, side by side")->type_name("FILE");
+}
+
+void add_diff(CLI::App& app, Devices devices, Action& action) {
+  auto* command = app.add_subcommand("diff", kHelp);
+  const auto options = std::make_shared<Options>();
+  command->add_option("A", options->before, "a recording, '-' for standard input")->required();
+  command->add_option("B", options->after, "another one")->required();
+  add_comparison_options(*command, options->comparison);
+  add_foreign_options(*command, options->foreign);
+  command->callback([options, devices, &action] {
+    action = [options, devices] { return compare(devices, *options); };
+  });
+}
+
+}  // namespace armjig::cli

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/outputs.hpp"
+#include "harness/compare/recording_diff.hpp"
+#include "harness/compare/rules.hpp"
+
+namespace armjig::cli {
+
+/// Adds `diff`.
+void add_diff(CLI::App& app, Devices devices, Action& action);
+
+/// How two recordings are compared, and where that is told.
+struct ComparisonOptions {
+  std::string rules;
+  std::string html;
+  bool wants_json = false;
+};
+
+/// Adds `--rules`, `--json`, `--html`.
+void add_comparison_options(CLI::App& app, ComparisonOptions& options);
+
+/// What was compared: how the columns of the page are called, and how many messages there were.
+struct Compared {
+  std::string before;
+  std::string after;
+  std::size_t messages{};
+};
+
+/// On standard output the first differences with fields, a summary by field, and a verdict, or one
+/// JSON object; on the page, if there is one, both side by side. Answers the exit code.
+[[nodiscard]] Exit tell(const std::vector<RecordingDifference>& found, const Compared& compared,
+                        bool wants_json, const Output& html);
+
+/// Of all devices there are, for `RecordedMessages`.
+[[nodiscard]] std::function<MakeDissector(std::string_view)> dissectors_of(Devices devices);
+
+/// What may differ; nothing if there is no file. Problems: those of `ComparisonRules::read`.
+[[nodiscard]] Outcome<ComparisonRules> rules_of(const std::string& path);
+
+}  // namespace armjig::cli

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/capture/capture.hpp"
+#include "harness/link/bus_port.hpp"
+#include "harness/link/session_source.hpp"
+#include "harness/link/stream_port.hpp"
+
+/// The host's side of a recording, played against a device, whoever and wherever it is: what the
+/// host sent leaves at its time, and what the device says is kept beside what it said.
+namespace armjig {
+
+/// A record that outlives its reader.
+struct KeptRecord {
+  Instant time{};
+  LinkKind kind{};
+  Direction direction{};
+  std::uint32_t id{};
+  std::vector<std::byte> bytes{};
+  std::string details{};
+
+  [[nodiscard]] static KeptRecord from(const CaptureRecord& record) {
+    return {record.time,
+            record.link->kind,
+            record.direction,
+            record.id,
+            {record.bytes.begin(), record.bytes.end()},
+            std::string{record.details}};
+  }
+  /// Valid as long as this and the link.
+  [[nodiscard]] CaptureRecord on(const CaptureLink& link) const {
+    return {time, &link, direction, id, bytes, details};
+  }
+};
+
+struct PlayHow {
+  double speed = 1;     ///< 2: in half the time; what is kept has the times of the recording
+  Duration trailing{};  ///< listens so much longer than the recording lasts
+};
+
+/// What is to be compared, of both sides in order of time.
+struct Played {
+  std::vector<KeptRecord> expected;
+  std::vector<KeptRecord> actual;
+  /// When the host ended a connection, by its number: what is later than recorded is not heard
+  /// then.
+  std::vector<std::pair<std::uint32_t, Instant>> ends;
+  std::size_t sent{};  ///< records of the host that were played
+  /// What no host can play on this link or nobody can see there, by its name, and how often.
+  std::map<std::string, std::size_t> left_out;
+};
+
+/// Plays records of one link, and the events and CAN frames beside it. The schedule is absolute:
+/// what is late delays nothing that follows. Problems: those of the port, `kForbidden` among them
+/// if the guard refused something; what follows is not sent then.
+[[nodiscard]] Outcome<Played> play_host(StreamPort& port, std::span<const KeptRecord> records,
+                                        const PlayHow& how);
+/// A connection that the recording has from its middle on is begun at its first record.
+[[nodiscard]] Outcome<Played> play_host(SessionSource& server, std::span<const KeptRecord> records,
+                                        const PlayHow& how);
+/// By single operations where the bus can, otherwise by whole transactions. What was acknowledged
+/// is compared where the recording says it; behind whole transactions, as far as they tell.
+[[nodiscard]] Outcome<Played> play_host(BusPort& port, std::span<const KeptRecord> records,
+                                        const PlayHow& how);
+
+}  // namespace armjig

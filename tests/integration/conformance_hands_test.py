@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Cases that need somebody at the device run over a link with --hand, --restart and --power-cycle.
+
+usage: conformance_hands_test.py ARMJIG
+"""
+import concurrent.futures
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+
+# Starts the emulator anew, whatever became of the one before, and waits until it listens.
+RESTART = """#!/bin/sh
+cd "$(dirname "$0")" || exit 1
+[ -s pid ] && kill -9 "$(cat pid)"
+rm -f place
+echo restarted >> told
+"{armjig}" emulate kinovazed --tcp {port} --bind {address} < /dev/null > place 2> /dev/null &
+echo $! > pid
+while [ ! -s place ]; do kill -0 $! || exit 1; sleep 0.05; done
+"""
+# What was asked for is done when the command ends: the emulator says of each input that it is set.
+HAND = """#!/bin/sh
+cd "$(dirname "$0")" || exit 1
+set_input() {
+  before=$(grep -c "$1 is $2" said)
+  echo "$1 $2" > input
+  while [ "$(grep -c "$1 is $2" said)" -le "$before" ]; do sleep 0.01; done
+}
+"""
+SET = HAND + """echo "$1 $2" >> told
+set_input "$1" "$2"
+"""
+POWER = HAND + """echo switched >> told
+set_input power 1
+"""
+
+
+class Folder:
+    def __init__(self, armjig, path):
+        self.armjig = armjig
+        self.path = path
+
+    def file(self, name):
+        return os.path.join(self.path, name)
+
+    def script(self, name, text):
+        with open(self.file(name), "w") as file:
+            file.write(text)
+        os.chmod(self.file(name), 0o755)
+        return self.file(name)
+
+    def told(self):
+        return open(self.file("told")).read().split("\n") if os.path.exists(self.file("told")) else []
+
+    def verdicts(self, device, target, case, *options):
+        """What the cases come to, by their names."""
+        report = self.file("report.json")
+        ended = subprocess.run([self.armjig, "conformance", device, "--target", target, "--allow",
+                                "all", "--filter", case, "--require", "0", "--json", report,
+                                *options], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               text=True, timeout=280)
+        result = json.load(open(report))
+        assert "processors" in result["facts"]["host load"], result["facts"]
+        assert "an emulated device's answers in" in result["facts"], result["facts"]
+        rows = result["rows"]
+        return {row["name"]: row["verdict"] for row in rows}, ended.stdout
+
+
+def free_place():
+    """An address on loopback that nothing else uses, so that nobody takes its port between restarts."""
+    address = f"127.{os.getpid() >> 16 & 127 | 64}.{os.getpid() >> 8 & 255}.{os.getpid() & 255}"
+    with socket.socket() as one:
+        one.bind((address, 0))
+        return one.getsockname()
+
+
+def check_restart(armjig, path):
+    folder = Folder(armjig, path)
+    address, port = free_place()
+    restart = folder.script("restart", RESTART.format(armjig=os.path.abspath(armjig),
+                                                      address=address, port=port))
+    subprocess.run([restart], check=True)
+    first = open(folder.file("pid")).read()
+    try:
+        case = "kinovazed.death.accept-reset"
+        target = f"tcp:{address}:{port}"
+        alone, _ = folder.verdicts("kinovazed", target, case)
+        assert alone == {case: "skipped"}, alone
+        verdicts, out = folder.verdicts("kinovazed", target, case, "--restart", restart)
+        assert verdicts == {case: "pass"}, out
+        start = "kinovazed.state.start"
+        verdicts, out = folder.verdicts("kinovazed", target, start, "--restart", restart)
+        assert verdicts[start] == "pass", out
+        assert open(folder.file("pid")).read() != first
+    finally:
+        os.kill(int(open(folder.file("pid")).read()), signal.SIGKILL)
+    return f"restarted {folder.told().count('restarted') - 1} times"
+
+
+def check_hand(armjig, path):
+    folder = Folder(armjig, path)
+    os.mkfifo(folder.file("input"))
+    hand = folder.script("hand", SET)
+    power = folder.script("power", POWER)
+    entry = os.open(folder.file("input"), os.O_RDWR)  # kept open, so that it never ends
+    said = open(folder.file("said"), "w")
+    emulator = subprocess.Popen([armjig, "emulate", "parol6", "--json"], stdin=entry,
+                                stdout=subprocess.PIPE, stderr=said, text=True)
+    try:
+        target = json.loads(emulator.stdout.readline())["listening"][0]
+        for case in ("parol6.io.in1-bit", "parol6.command.zero-at-start"):
+            alone, out = folder.verdicts("parol6", target, case)
+            assert set(alone.values()) == {"skipped"}, out
+            verdicts, out = folder.verdicts("parol6", target, case, "--hand", hand,
+                                            "--power-cycle", power)
+            assert verdicts and set(verdicts.values()) == {"pass"}, out
+        told = folder.told()
+        assert "in1 1" in told and "in1 0" in told, told
+        assert "switched" in told and "power 1" not in told, told
+    finally:
+        emulator.send_signal(signal.SIGTERM)
+        emulator.wait(timeout=30)
+        os.close(entry)
+        said.close()
+    return f"{len(told) - 1} things done by hand"
+
+
+def main(armjig):
+    with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
+        with concurrent.futures.ThreadPoolExecutor() as both:
+            runs = [both.submit(check_restart, armjig, one),
+                    both.submit(check_hand, armjig, other)]
+        for run in runs:
+            print(run.result())
+
+
+main(*sys.argv[1:])

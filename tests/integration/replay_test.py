@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""`armjig replay` plays the host of a recording: in virtual time, and to hosted devices on a
+pseudo-terminal, TCP and a virtual I2C bus: replay_test.py ARMJIG SOURCE
+"""
+
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ARMJIG, SOURCE = sys.argv[1:3]
+PATIENCE = 120
+# The machine may be slow; what is said, and how often, has to be the same.
+RULES = """
+time_ms = 3000
+[[field]]
+name = "timing"
+ignore = true
+"""
+JOG = f"{SOURCE}/captures/parol6/jog_stops_a.jsonl"
+
+
+class Replay(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.rules = self.folder / "rules.toml"
+        self.rules.write_text(RULES)
+
+    def run_armjig(self, *words, code=0):
+        done = subprocess.run([ARMJIG, *map(str, words)], capture_output=True, text=True,
+                              check=False, stdin=subprocess.DEVNULL, timeout=PATIENCE)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def emulate(self, *words):
+        """An emulated device for other programs, and where it listens."""
+        process = subprocess.Popen([ARMJIG, "emulate", *map(str, words), "--json"],
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.send_signal, signal.SIGINT)
+        return json.loads(process.stdout.readline())["listening"][0]
+
+    def record(self, device, seconds=1):
+        """What a host that only watches and an emulated device say to each other."""
+        file = self.folder / f"{device}.jsonl"
+        self.run_armjig("watch", device, "--target", "emulated:", "--seconds", seconds,
+                        "--capture", file)
+        return file
+
+    def changed(self, file, direction, what, by):
+        """The recording with something else in the middle of those lines."""
+        lines = file.read_text().splitlines()
+        of_it = [i for i, line in enumerate(lines) if direction in line and what in line]
+        place = of_it[len(of_it) // 2]
+        lines[place] = lines[place].replace(what, by, 1)
+        other = self.folder / "changed.jsonl"
+        other.write_text("\n".join(lines) + "\n")
+        return other
+
+    def test_in_virtual_time_each_byte_and_time_is_the_same(self):
+        for device in ("parol6", "kinovazed", "morap"):
+            with self.subTest(device):
+                file = self.record(device, 3)
+                for _ in range(2):
+                    done = self.run_armjig("replay", file, "--target", "emulated:")
+                    self.assertEqual((done.stdout, done.stderr), ("equal\n", ""))
+                packets = self.folder / f"{device}.pcapng"
+                self.run_armjig("trace", "convert", file, packets)
+                self.run_armjig("replay", packets, "--target", "emulated:")
+
+    def test_what_was_written_by_hand(self):
+        self.run_armjig("replay", f"{SOURCE}/captures/demo/start-and-halt.jsonl", "--target",
+                        "emulated:")
+
+    def test_what_differs_is_named(self):
+        file = self.record("kinovazed", 5)
+        other = self.changed(file, "from_device", "".join(f"{ord(c):02x}" for c in "Heartbeat:3"),
+                             "".join(f"{ord(c):02x}" for c in "Heartbeat:2"))
+        done = self.run_armjig("replay", other, "--target", "emulated:", code=1)
+        self.assertIn("state: ", done.stdout)
+        self.assertIn("1 times state", done.stdout)
+        found = json.loads(self.run_armjig("replay", other, "--target", "emulated:", "--json",
+                                           code=1).stdout)
+        self.assertEqual((len(found["differences"]), found["fields"]), (1, {"state": 1}))
+
+    def test_what_the_host_sends_reaches_the_device(self):
+        file = self.record("morap")
+        other = self.changed(file, '"write"', '"80"', '"88"')  # the address, and not the angle
+        done = self.run_armjig("replay", other, "--target", "emulated:", code=1)
+        self.assertIn("different", done.stdout)
+
+    def test_a_pseudo_terminal(self):
+        place = self.emulate("parol6", "--pty")
+        target = place if place.startswith("pty:") else f"pty:{place}"
+        self.run_armjig("replay", self.record("parol6"), "--target", target, "--rules", self.rules,
+                        "--allow", "state")
+
+    def test_tcp(self):
+        target = self.emulate("kinovazed", "--tcp", "0")
+        self.run_armjig("replay", self.record("kinovazed", 8), "--target", target, "--rules",
+                        self.rules)
+
+    def test_a_virtual_bus(self):
+        bus = self.folder / "bus.toml"
+        bus.write_text("[[node]]\nid = 2\n")
+        self.run_armjig("lab", "exec", "--i2c", bus, "--", ARMJIG, "replay", self.record("morap"),
+                        "--target", "i2c:/dev/i2c-1", "--rules", self.rules)
+
+    def test_speed_is_scaled_back(self):
+        """Ten times as fast, a server says a tenth of its heartbeats."""
+        done = self.run_armjig("replay", self.record("kinovazed", 10), "--target", "emulated:",
+                               "--speed", 10, code=1)
+        self.assertIn("missing", done.stdout)
+
+    def test_what_moves_an_arm_is_asked_for_before_the_first_byte(self):
+        place = self.emulate("parol6", "--pty", "--capture", self.folder / "got.jsonl")
+        target = place if place.startswith("pty:") else f"pty:{place}"
+        done = self.run_armjig("replay", JOG, "--target", target, code=3)
+        self.assertIn("nothing was sent: this recording needs --allow ", done.stderr)
+        self.assertIn("move", done.stderr)
+        self.assertNotIn("to_device", (self.folder / "got.jsonl").read_text())
+
+    def test_misuse(self):
+        empty = self.folder / "empty.jsonl"
+        empty.write_text('{"format":"golden-trace/1","device":"parol6"}\n')
+        toaster = self.folder / "toaster.jsonl"
+        toaster.write_text('{"format":"golden-trace/1","device":"toaster"}\n'
+                           '{"t_us":0,"dir":"to_device","hex":"00"}\n')
+        for words in ((JOG,), (JOG, "--target", "nowhere"), (empty, "--target", "emulated:"),
+                      (toaster, "--target", "emulated:"), ("/no/such", "--target", "emulated:"),
+                      (JOG, "--target", "emulated:", "--speed", "0"),
+                      (JOG, "--target", "emulated:", "--rules", "/no/such")):
+            with self.subTest(words=words):
+                self.run_armjig("replay", *words, code=2)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

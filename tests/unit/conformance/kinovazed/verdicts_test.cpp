@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run says of servers whose answers nobody understands.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "conformance/kinovazed/suite.hpp"
+#include "conformance/run.hpp"
+#include "harness/link/port_around.hpp"
+#include "tests/unit/support/devices.hpp"
+
+namespace armjig::kinovazed::conformance {
+namespace {
+
+using testing::HasSubstr;
+
+/// One byte of the server becomes another one, or none.
+using Change = std::function<std::string(char)>;
+
+/// A connection to a server whose bytes are changed before they are read. None gets longer.
+class ChangedSession final : public SessionAround {
+ public:
+  ChangedSession(std::unique_ptr<SessionPort> port, Change change,
+                 std::shared_ptr<std::size_t> sent)
+      : PortAround{std::move(port)}, change_{std::move(change)}, sent_{std::move(sent)} {}
+
+  Result<void> connect(Instant deadline) override { return inner().connect(deadline); }
+  Result<void> send(Bytes segment) override {
+    if (sent_ != nullptr) *sent_ += segment.size();
+    return inner().send(segment);
+  }
+  Result<Received> receive(std::span<std::byte> into, Instant deadline) override {
+    auto received = inner().receive(into, deadline);
+    if (!received) return received;
+    std::string text;
+    for (const auto byte : into.first(received->size)) text += change_(static_cast<char>(byte));
+    std::ranges::copy(std::as_bytes(std::span{text}), into.begin());
+    received->size = text.size();
+    return received;
+  }
+  void half_close() override { inner().half_close(); }
+  void close() override { inner().close(); }
+  void reset() override { inner().reset(); }
+
+ private:
+  Change change_;
+  std::shared_ptr<std::size_t> sent_;  ///< bytes, of all clients; nobody counts if none
+};
+
+/// A server in memory that nobody can touch.
+class ChangedServer final : public SourceAround {
+ public:
+  explicit ChangedServer(const Change& change, std::shared_ptr<std::size_t> sent = nullptr)
+      : SourceAround{test::wiring<cli::OnServer>("kinovazed")
+                         .open_emulated(parse_target("emulated:").value())
+                         .value(),
+                     [change, sent](std::unique_ptr<SessionPort> port) {
+                       return std::make_unique<ChangedSession>(std::move(port), change, sent);
+                     }} {}
+  bool touch(std::string_view /*input*/, std::int64_t /*value*/) override { return false; }
+};
+
+std::string unchanged(char c) { return std::string{c}; }
+
+/// A client makes it move and leaves.
+void steer(SessionSource& server) {
+  using namespace std::chrono_literals;
+  const auto client = server.make_port();
+  ASSERT_TRUE(client->connect(client->now() + 2s));
+  for (const std::string_view line :
+       {"QuitEStop\r\n", "Initialize\r\n", "SetJoystickMode:XYZ\r\n"}) {
+    ASSERT_TRUE(client->send(std::as_bytes(std::span{line})));
+    std::array<std::byte, 4096> buffer;
+    for (const auto end = client->now() + 20s; client->now() < end;) {
+      ASSERT_TRUE(client->receive(buffer, end));
+    }
+  }
+  client->close();
+}
+
+/// All cases that only look, on a server that is no emulated one as far as the bench knows.
+Report look_at(std::unique_ptr<ChangedServer> server) {
+  const RigOptions how{.target = parse_target("tcp:localhost:1").value()};
+  const auto bench = make_bench(Rig<SessionSource>{std::move(server)}, how);
+  return run_suite(suite(), **bench, {}, [](const ReportRow&) {});
+}
+
+Report run(const Change& change) {
+  const auto bench = make_bench(Rig<SessionSource>{std::make_unique<ChangedServer>(change)},
+                                {.permissions = Permissions::all()});
+  RunOptions options;
+  options.selection.filter = "kinovazed.reply.words";
+  options.permissions = Permissions::all();
+  return run_suite(suite(), **bench, options, [](const ReportRow&) {});
+}
+
+Change instead_of(char from, std::string to) {
+  return [from, to = std::move(to)](char c) { return c == from ? to : std::string{c}; };
+}
+
+/// That the first row is the finding, and what of it is shown.
+void expect_finding(const Report& report, std::string_view layout, std::string_view bytes) {
+  EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
+  ASSERT_FALSE(report.rows.empty());
+  const auto& row = report.rows.front();
+  EXPECT_EQ(row.name, "kinovazed.alive");
+  EXPECT_EQ(row.verdict, Verdict::kFail);
+  EXPECT_THAT(row.expected, HasSubstr(std::string{layout}));
+  EXPECT_THAT(row.actual, HasSubstr(std::string{bytes}));
+}
+
+TEST(ServerVerdicts, LinesThatEndWithLfAloneAreTheFinding) {
+  expect_finding(run(instead_of('\r', "")), "CR LF", R"('Accepted\x0A')");
+}
+
+TEST(ServerVerdicts, LinesThatEndWithoutLfAreTheFinding) {
+  expect_finding(run(instead_of('\n', "\r")), "CR LF", R"(Accepted\x0D\x0D)");
+}
+
+TEST(ServerVerdicts, WordsInLowerCaseAreTheFinding) {
+  expect_finding(
+      run([](char c) {
+        return std::string{static_cast<char>(std::tolower(static_cast<unsigned char>(c)))};
+      }),
+      "one of the server's words and CR LF", R"('accepted\x0D\x0A')");
+}
+
+TEST(ServerVerdicts, WordsThatAreTooShortAreTheFinding) {
+  expect_finding(run(instead_of('d', "")), "one of the server's words and CR LF",
+                 R"('Accepte\x0D\x0A')");
+}
+
+TEST(ServerVerdicts, AnUnchangedServerPasses) {
+  EXPECT_EQ(conclusion_of(run(unchanged)), Conclusion::kPassed);
+}
+
+TEST(OnlyLooking, SendsNothingToAnArmThatIsInUse) {
+  const auto sent = std::make_shared<std::size_t>();
+  auto server = std::make_unique<ChangedServer>(unchanged, sent);
+  steer(*server);
+  *sent = 0;
+  const auto report = look_at(std::move(server));
+  EXPECT_EQ(*sent, 0U);
+  EXPECT_EQ(report.count(Verdict::kSkipped), report.rows.size());
+  EXPECT_TRUE(std::ranges::any_of(report.rows, [](const ReportRow& row) {
+    return row.actual == "the arm is in use (Heartbeat:69), and needs --allow state to be stopped";
+  }));
+}
+
+TEST(OnlyLooking, JudgesAnArmThatIsStopped) {
+  const auto report = look_at(std::make_unique<ChangedServer>(unchanged));
+  EXPECT_GE(report.count(Verdict::kPass), 40U);
+  EXPECT_EQ(report.count(Verdict::kFail), 0U);
+}
+
+}  // namespace
+}  // namespace armjig::kinovazed::conformance
