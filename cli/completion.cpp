@@ -15,7 +15,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kCompletionHelp =
     "Prints a completion script for a shell.\n"
     "\n"
     "  source <(armjig completion bash)\n"
@@ -84,7 +84,7 @@ constexpr std::array kShells{Shell{"bash", kBash}, Shell{"zsh", kZsh}, Shell{"fi
 }  // namespace
 
 void add_completion(CLI::App& app, Devices /*devices*/, Action& action) {
-  auto* completion = app.add_subcommand("completion", kHelp);
+  auto* completion = app.add_subcommand("completion", kCompletionHelp);
   const auto wanted = std::make_shared<std::string>();
   std::vector<std::string> names;
   for (const auto& shell : kShells) names.emplace_back(shell.name);

@@ -37,7 +37,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kConformanceHelp =
     "Checks a device against the requirements of its protocol.\n"
     "\n"
     "  armjig conformance DEVICE --target emulated:          the emulator, in virtual time\n"
@@ -50,7 +50,7 @@ constexpr auto kHelp =
     "On a device that is not emulated only what cannot move or switch anything is run; --allow\n"
     "adds the rest. Clear the space around the arm before --allow move,home.";
 
-struct Options {
+struct ConformanceOptions {
   std::string device;
   TargetOptions target;
   HandOptions hands;
@@ -77,11 +77,11 @@ std::vector<std::string> names_in(const Suite& suite) {
   return names;
 }
 
-bool is_listed(const Requirement& requirement, const Options& options) {
+bool is_listed(const Requirement& requirement, const ConformanceOptions& options) {
   return requirement.id.find(options.run.selection.filter) != std::string_view::npos;
 }
 
-Exit list_requirements(const Suite& suite, const Options& options) {
+Exit list_requirements(const Suite& suite, const ConformanceOptions& options) {
   int listed = 0;
   for (const auto& chapter : suite.chapters) {
     for (const auto& requirement : chapter.requirements) {
@@ -141,7 +141,7 @@ std::chrono::year_month_day today() {
 }
 
 /// Reads what the parser left as words.
-Outcome<void> complete(const Suite& suite, Options& options) {
+Outcome<void> complete(const Suite& suite, ConformanceOptions& options) {
   options.run.profile = options.profile == "documented" ? Profile::kDocumented : Profile::kFirmware;
   options.run.selection.tier = options.tier == "quick" ? Tier::kQuick : Tier::kFull;
   const auto shard = parse_shard(options.shard);
@@ -156,7 +156,7 @@ Outcome<void> complete(const Suite& suite, Options& options) {
 }
 
 /// The command line that does this again, but for the filter.
-std::string command_of(const Options& options) {
+std::string command_of(const ConformanceOptions& options) {
   auto text =
       fmt::format("armjig conformance {} --target '{}'{}", options.device, options.target.target,
                   to_arguments(options.target) + to_arguments(options.hands));
@@ -202,7 +202,7 @@ void add_machine(Report& result) {
                                         is_kept ? "kept" : "not kept"));
 }
 
-Exit run(const Device& device, const Suite& suite, Options options) {
+Exit run(const Device& device, const Suite& suite, ConformanceOptions options) {
   auto how = parse_target_options(options.target);
   if (!how) return report(how.error());
   const bool names_profile = how->target.options.contains("profile");
@@ -264,7 +264,7 @@ Exit run(const Device& device, const Suite& suite, Options options) {
   return signals.has_come() ? signals.exit() : static_cast<Exit>(conclusion_of(result));
 }
 
-Exit conformance(Devices devices, Options options) {
+Exit conformance(Devices devices, ConformanceOptions options) {
   const auto device = find_device(devices, options.device);
   if (!device) return report(device.error());
   const auto suite = (*device)->suite();
@@ -313,8 +313,8 @@ void add_diff(CLI::App& conformance, Action& action) {
 }  // namespace
 
 void add_conformance(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("conformance", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("conformance", with_example(kConformanceHelp, devices));
+  const auto options = std::make_shared<ConformanceOptions>();
   command->add_option("DEVICE", options->device, "which one: " + names_of(devices))->type_name("");
   add_target_options(*command, options->target);
   add_hand_options(*command, options->hands);

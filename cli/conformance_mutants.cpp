@@ -20,14 +20,14 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kMutantsHelp =
     "Tries the suite on faulty devices: which of them does it find?\n"
     "\n"
     "Each mutant is an emulated device with one fault. Survivors that nobody could tell from a\n"
     "sound device are listed with the reason; any other one exits with 1, and so does a\n"
     "must-requirement that no mutant breaks.";
 
-struct Options {
+struct MutantsOptions {
   std::string device;
   std::string profile = "firmware";
   MutationOptions run;
@@ -50,7 +50,7 @@ Exit list_mutants(const MutantsEntry& entry, Profile profile, const std::string&
   return Exit::kNothing;
 }
 
-Exit run(const Device& device, const MutantsEntry& entry, Options options) {
+Exit run(const Device& device, const MutantsEntry& entry, MutantsOptions options) {
   const auto files = ReportOutputs::open(options.files);
   if (!files) return report(files.error());
   const auto suite = device.suite();
@@ -82,7 +82,7 @@ Exit run(const Device& device, const MutantsEntry& entry, Options options) {
   return signals.has_come() ? signals.exit() : static_cast<Exit>(conclusion_of(summary));
 }
 
-Exit mutants(Devices devices, Options options) {
+Exit mutants(Devices devices, MutantsOptions options) {
   const auto device = find_device(devices, options.device);
   if (!device) return report(device.error());
   const auto entry = (*device)->mutants();
@@ -95,8 +95,8 @@ Exit mutants(Devices devices, Options options) {
 }  // namespace
 
 void add_conformance_mutants(CLI::App& conformance, Devices devices, Action& action) {
-  auto* command = conformance.add_subcommand("mutants", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = conformance.add_subcommand("mutants", kMutantsHelp);
+  const auto options = std::make_shared<MutantsOptions>();
   options->run.threads = std::max(1U, std::thread::hardware_concurrency());
   add_device_argument(*command, options->device, devices);
   command->add_option("--profile", options->profile, "of the device, and whose expectations")

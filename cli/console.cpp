@@ -28,7 +28,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kHelp =
+constexpr auto kConsoleHelp =
     "Drives an arm by hand, or by commands from a pipe.\n"
     "\n"
     "  armjig console DEVICE --target emulated:                 try it: 'help' lists the commands\n"
@@ -43,7 +43,7 @@ constexpr auto kHelp =
     "Exit codes from a pipe: 0 all had effect, 1 some had none or were refused, 2 some cannot be\n"
     "read, 3 the target is silent or gone, 4 there was no command.";
 
-struct Options {
+struct ConsoleOptions {
   std::string device;
   TargetOptions target;
 };
@@ -51,7 +51,7 @@ struct Options {
 constexpr Duration kPeriod = 10ms;
 constexpr std::size_t kLongestLine = 4096;
 
-Problem silence(const Options& options, const DeviceConsole& console) {
+Problem silence(const ConsoleOptions& options, const DeviceConsole& console) {
   return {ErrorCode::kTimedOut, options.target.target, std::string{console.silence()}};
 }
 
@@ -90,7 +90,7 @@ class InputLines {
 /// Commands from a pipe, each to its end.
 class PipeSession {
  public:
-  PipeSession(const Options& options, InputLines::Patience patience)
+  PipeSession(const ConsoleOptions& options, InputLines::Patience patience)
       : options_{options}, patience_{patience} {}
 
   Exit run(DeviceConsole& console) {
@@ -170,7 +170,7 @@ class PipeSession {
     exit_ = std::max(exit_, exit);
   }
 
-  const Options& options_;
+  const ConsoleOptions& options_;
   InputLines::Patience patience_;
   Signals signals_;
   InputLines input_;
@@ -184,7 +184,7 @@ class PipeSession {
 /// A person at a terminal.
 class TerminalSession {
  public:
-  TerminalSession(const Options& options, bool is_emulated)
+  TerminalSession(const ConsoleOptions& options, bool is_emulated)
       : options_{options}, is_emulated_{is_emulated} {}
 
   Exit run(DeviceConsole& console) {
@@ -243,7 +243,7 @@ class TerminalSession {
     return LineEditor::Wish::kGoOn;
   }
 
-  const Options& options_;
+  const ConsoleOptions& options_;
   bool is_emulated_;
   Signals signals_;
   DeviceConsole* console_ = nullptr;
@@ -255,14 +255,15 @@ class TerminalSession {
 };
 
 template <class Session>
-Exit run(Session&& session, const Device& device, const Options& options, const RigOptions& how) {
+Exit run(Session&& session, const Device& device, const ConsoleOptions& options,
+         const RigOptions& how) {
   auto console =
       open_console(device, how, options.target.target,
                    [&session](Tone tone, std::string_view text) { session.say(tone, text); });
   return console ? session.run(**console) : report(console.error());
 }
 
-Exit console(Devices devices, const Options& options) {
+Exit console(Devices devices, const ConsoleOptions& options) {
   const auto device = find_device(devices, options.device);
   if (!device) return report(device.error());
   const auto how = parse_target_options(options.target);
@@ -279,8 +280,8 @@ Exit console(Devices devices, const Options& options) {
 }  // namespace
 
 void add_console(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("console", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("console", with_example(kConsoleHelp, devices));
+  const auto options = std::make_shared<ConsoleOptions>();
   add_device_argument(*command, options->device, devices);
   add_target_options(*command, options->target);
   command->callback([options, devices, &action] {

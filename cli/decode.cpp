@@ -34,7 +34,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kDecodeHelp =
     "Shows what bytes mean, a line for each message.\n"
     "\n"
     "  armjig decode DEVICE 'FF FF FF 34 00 ... 01 02'     hexadecimal digits\n"
@@ -61,7 +61,7 @@ struct Wanted {
   std::string value;
 };
 
-struct Options {
+struct DecodeOptions {
   std::string device;
   std::vector<std::string> hex;
   std::string file;
@@ -88,7 +88,7 @@ struct Decoded {
 using Use = std::function<void(const Decoded& decoded)>;
 
 /// Of raw bytes and digits; a recording is read by lines and may be larger.
-constexpr std::size_t kMostBytes = std::size_t{64} << 20U;
+constexpr std::size_t kMostPipedBytes = std::size_t{64} << 20U;
 
 Outcome<std::vector<std::byte>> parse_hex(const std::string& where, const std::string& text) {
   auto bytes = from_hex(text);
@@ -113,7 +113,7 @@ Direction guess_direction(MakeDissector make_dissector, Bytes bytes) {
              : Direction::kFromDevice;
 }
 
-Direction direction_of(const Options& options, MakeDissector make_dissector, Bytes bytes) {
+Direction direction_of(const DecodeOptions& options, MakeDissector make_dissector, Bytes bytes) {
   if (options.direction == "to-device") return Direction::kToDevice;
   if (options.direction == "from-device") return Direction::kFromDevice;
   return guess_direction(make_dissector, bytes);
@@ -123,7 +123,7 @@ double seconds(Instant time) {
   return std::chrono::duration<double>{time.time_since_epoch()}.count();
 }
 
-bool is_wanted(const CaptureRecord& record, const Options& options) {
+bool is_wanted(const CaptureRecord& record, const DecodeOptions& options) {
   const auto kind = record.link->kind;
   const bool is_session = kind == LinkKind::kSession;
   const bool is_bus = kind == LinkKind::kBus;
@@ -134,7 +134,7 @@ bool is_wanted(const CaptureRecord& record, const Options& options) {
 
 /// Message by message, in memory that does not grow with the file.
 Outcome<void> decode_recording(Outcome<std::unique_ptr<CaptureReader>> reader,
-                               const Options& options, Devices devices, const Device& device,
+                               const DecodeOptions& options, Devices devices, const Device& device,
                                const Use& use) {
   if (!reader) return tl::unexpected{reader.error()};
   std::map<std::pair<const CaptureLink*, std::uint32_t>, std::unique_ptr<Dissector>> talks;
@@ -176,8 +176,8 @@ Outcome<void> decode_recording(Outcome<std::unique_ptr<CaptureReader>> reader,
 }
 
 /// Bytes of which nobody knows when they passed.
-void decode_bytes(const std::vector<std::byte>& bytes, const Options& options, const Device& device,
-                  const Use& use) {
+void decode_bytes(const std::vector<std::byte>& bytes, const DecodeOptions& options,
+                  const Device& device, const Use& use) {
   std::vector<Message> messages;
   const auto dissector = device.make_dissector();
   dissector->feed(direction_of(options, device.make_dissector, bytes), {}, bytes, messages);
@@ -185,7 +185,7 @@ void decode_bytes(const std::vector<std::byte>& bytes, const Options& options, c
   for (const auto& message : messages) use({message, false});
 }
 
-Outcome<void> decode_all(const Options& options, Devices devices, const Device& device,
+Outcome<void> decode_all(const DecodeOptions& options, Devices devices, const Device& device,
                          const Use& use) {
   const auto decode = [&](const std::vector<std::byte>& bytes) {
     decode_bytes(bytes, options, device, use);
@@ -208,7 +208,7 @@ Outcome<void> decode_all(const Options& options, Devices devices, const Device& 
     auto reader = open_foreign(*std::move(file), options.file, *how);
     return decode_recording(std::move(reader), options, devices, device, use);
   }
-  const auto content = file->rest(kMostBytes);
+  const auto content = file->rest(kMostPipedBytes);
   if (!content) return tl::unexpected{content.error()};
   const auto format = options.format == "auto" ? guess_format(*content) : options.format;
   if (format == "hex") return parse_hex(options.file, *content).map(decode);
@@ -256,7 +256,8 @@ bool has_value(const Message& message, const Wanted& wanted) {
   return is_there;
 }
 
-bool is_wanted(const Decoded& decoded, const Options& options, const std::vector<Wanted>& wanted) {
+bool is_wanted(const Decoded& decoded, const DecodeOptions& options,
+               const std::vector<Wanted>& wanted) {
   const auto& message = decoded.message;
   const auto time = seconds(message.time);
   if (decoded.has_time && (time < options.from || time > options.to)) return false;
@@ -325,7 +326,7 @@ class Table {
 /// Messages as lines. They are collected: a file may have millions of them.
 class Lines {
  public:
-  explicit Lines(const Options& options) : options_{options} {}
+  explicit Lines(const DecodeOptions& options) : options_{options} {}
   Lines(const Lines&) = delete;
   Lines& operator=(const Lines&) = delete;
   ~Lines() { flush(); }
@@ -357,12 +358,12 @@ class Lines {
     return !options_.interface.empty() || ::isatty(STDOUT_FILENO) != 0;
   }
 
-  const Options& options_;
+  const DecodeOptions& options_;
   std::size_t enough_ = is_watched() ? 1 : kMuch;
   std::string text_;
 };
 
-Exit decode(Devices devices, const Options& options) {
+Exit decode(Devices devices, const DecodeOptions& options) {
   const auto inputs = (options.hex.empty() ? 0 : 1) + (options.file.empty() ? 0 : 1) +
                       (options.interface.empty() ? 0 : 1);
   if (inputs != 1) {
@@ -381,7 +382,7 @@ Exit decode(Devices devices, const Options& options) {
     return report({ErrorCode::kBadValue, "--csv",
                    "the columns are known when all is read, so it is read twice: name a file"});
   }
-  const auto decode_wanted = [&](const Options& how, const Use& use) {
+  const auto decode_wanted = [&](const DecodeOptions& how, const Use& use) {
     return decode_all(how, devices, **device, [&](const Decoded& decoded) {
       if (is_wanted(decoded, options, *wanted)) use(decoded);
     });
@@ -417,8 +418,8 @@ Exit decode(Devices devices, const Options& options) {
 }  // namespace
 
 void add_decode(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("decode", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("decode", with_example(kDecodeHelp, devices));
+  const auto options = std::make_shared<DecodeOptions>();
   add_device_argument(*command, options->device, devices);
   command->add_option("HEX", options->hex, "hexadecimal digits, in any number of words");
   command->add_option("--file", options->file, "read this file, '-' for standard input");

@@ -19,7 +19,7 @@ namespace armjig::cli {
 namespace {
 
 constexpr int kGlanceMs = 100;  ///< at whether it is time to end
-constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kLongestInput = 4096;
 
 /// Reading a terminal from the background would stop the whole program.
 bool is_ours() noexcept {
@@ -60,7 +60,7 @@ void DeviceInputs::read(const std::stop_token& stop) {
       obey(std::string_view{text_}.substr(0, end));
       text_.erase(0, end + 1);
     }
-    if (text_.size() > kLongestLine) return tell("standard input has no lines; it is left alone");
+    if (text_.size() > kLongestInput) return tell("standard input has no lines; it is left alone");
   }
 }
 

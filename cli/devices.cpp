@@ -13,7 +13,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kDevicesHelp =
     "Lists the serial ports of this machine, and what they look like.\n"
     "\n"
     "  armjig devices                                   what to write behind --target\n"
@@ -74,7 +74,7 @@ Exit devices(Devices devices, bool wants_json) {
 }  // namespace
 
 void add_devices(CLI::App& app, Devices known, Action& action) {
-  auto* command = app.add_subcommand("devices", kHelp);
+  auto* command = app.add_subcommand("devices", kDevicesHelp);
   const auto wants_json = std::make_shared<bool>(false);
   command->add_flag("--json", *wants_json, "as one JSON object");
   command->callback([wants_json, known, &action] {

@@ -29,7 +29,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Differences = std::vector<RecordingDifference>;
 
-constexpr auto kHelp =
+constexpr auto kDiffHelp =
     "Aligns two recordings, message by message, and says what differs, field by field.\n"
     "\n"
     "  armjig diff yesterday.pcapng today.pcapng\n"
@@ -39,7 +39,7 @@ constexpr auto kHelp =
     "Messages are compared with those of the same direction and connection. They are changed,\n"
     "missing, extra or moved.";
 
-struct Options {
+struct DiffOptions {
   std::string before;
   std::string after;
   ComparisonOptions comparison;
@@ -176,7 +176,7 @@ Outcome<ComparisonRules> rules_of(const std::string& path) {
 
 namespace {
 
-Exit compare(Devices devices, const Options& options) {
+Exit compare(Devices devices, const DiffOptions& options) {
   const auto refuse = [](const Problem& problem) {
     (void)report(problem);
     return Exit::kUsage;
@@ -214,8 +214,8 @@ void add_comparison_options(CLI::App& app, ComparisonOptions& options) {
 }
 
 void add_diff(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("diff", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("diff", kDiffHelp);
+  const auto options = std::make_shared<DiffOptions>();
   command->add_option("A", options->before, "a recording, '-' for standard input")->required();
   command->add_option("B", options->after, "another one")->required();
   add_comparison_options(*command, options->comparison);

@@ -15,7 +15,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kDoctorHelp =
     "Looks for what is in the way of talking to a real arm in time, and says how to fix it.\n"
     "\n"
     "  armjig doctor\n"
@@ -24,7 +24,7 @@ constexpr auto kHelp =
     "\n"
     "Changes nothing. Exit code 1 says that there is a problem; advice is none.";
 
-struct Options {
+struct DoctorOptions {
   bool wants_json = false;
   bool wants_rules = false;
 };
@@ -48,7 +48,7 @@ void print_json(const std::vector<Finding>& findings) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-Exit doctor(Devices devices, const Options& options) {
+Exit doctor(Devices devices, const DoctorOptions& options) {
   const auto boards = known_boards(devices);
   if (options.wants_rules) {
     fmt::print("{}", udev_rules(boards));
@@ -66,8 +66,8 @@ Exit doctor(Devices devices, const Options& options) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("doctor", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("doctor", kDoctorHelp);
+  const auto options = std::make_shared<DoctorOptions>();
   command->add_flag("--json", options->wants_json, "as one JSON object");
   command->add_flag("--udev-rules", options->wants_rules, "print udev rules for our boards");
   command->callback([options, devices, &action] {

@@ -15,7 +15,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kEmulateHelp =
     "An emulated device for programs that expect a real one, in real time.\n"
     "\n"
     "  armjig emulate DEVICE                        where a device of its kind is: on a new\n"
@@ -37,7 +37,7 @@ constexpr auto kHelp =
     "that is how a server ends. With --check what the program does wrong is said at once on\n"
     "standard error, and at the end as a report on standard output; findings exit with 1.";
 
-struct Options {
+struct EmulateOptions {
   std::string device;
   std::vector<std::string> settings;
   bool wants_pty = false;
@@ -57,7 +57,7 @@ struct Options {
 
 // How a device is served depends on its kind of port.
 
-Outcome<HostOptions> how_to_serve(const OnStream& /*kind*/, const Options& options) {
+Outcome<HostOptions> how_to_serve(const OnStream& /*kind*/, const EmulateOptions& options) {
   auto host = server_options();
   const bool is_elsewhere = options.wants_tcp || options.wants_rfc2217;
   if (options.wants_pty || !options.pty.link.empty() || !is_elsewhere) host.pty = options.pty;
@@ -70,7 +70,7 @@ Outcome<HostOptions> how_to_serve(const OnStream& /*kind*/, const Options& optio
   return host;
 }
 
-Outcome<HostOptions> how_to_serve(const OnServer& kind, const Options& options) {
+Outcome<HostOptions> how_to_serve(const OnServer& kind, const EmulateOptions& options) {
   if (options.wants_pty || !options.pty.link.empty() || options.wants_rfc2217) {
     return problem(ErrorCode::kUnsupported, options.device,
                    "it is a TCP server and has no pseudo-terminal or serial port; leave out --pty, "
@@ -83,7 +83,7 @@ Outcome<HostOptions> how_to_serve(const OnServer& kind, const Options& options) 
   return host;
 }
 
-Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const Options& options) {
+Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const EmulateOptions& options) {
   if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp ||
       options.wants_rfc2217 || options.speed != 1) {
     return problem(
@@ -118,7 +118,7 @@ std::string target_of(const DeviceOptions& settings) {
   return text;
 }
 
-Exit emulate(Devices devices, const Options& options) {
+Exit emulate(Devices devices, const EmulateOptions& options) {
   const auto settings = parse_settings(options.settings);
   if (!settings) return report(settings.error());
   const auto found = find_device(devices, options.device);
@@ -153,8 +153,8 @@ Exit emulate(Devices devices, const Options& options) {
 }  // namespace
 
 void add_emulate(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("emulate", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("emulate", with_example(kEmulateHelp, devices));
+  const auto options = std::make_shared<EmulateOptions>();
   add_device_argument(*command, options->device, devices);
   command->add_flag("--pty", options->wants_pty, "on a pseudo-terminal (the default)");
   command

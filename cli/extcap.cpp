@@ -15,7 +15,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kExtcapHelp =
     "What Wireshark calls, by the script that 'armjig wireshark install' makes: to ask what there\n"
     "is, and to capture. An interface is a device; a capture is 'armjig record' into Wireshark.\n"
     "\n"
@@ -23,7 +23,7 @@ constexpr auto kHelp =
 
 constexpr std::string_view kPrefix = "armjig-";
 
-struct Options {
+struct ExtcapOptions {
   bool wants_interfaces = false;
   bool wants_links = false;
   bool wants_settings = false;
@@ -66,7 +66,7 @@ void print_settings(const Device& device) {
       usual_place(device));
 }
 
-Exit extcap(Devices devices, const Options& options) {
+Exit extcap(Devices devices, const ExtcapOptions& options) {
   if (options.wants_interfaces) {
     print_interfaces(devices);
     return Exit::kPassed;
@@ -101,8 +101,8 @@ Exit extcap(Devices devices, const Options& options) {
 }  // namespace
 
 void add_extcap(CLI::App& wireshark, Devices devices, Action& action) {
-  auto* command = wireshark.add_subcommand("extcap", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = wireshark.add_subcommand("extcap", kExtcapHelp);
+  const auto options = std::make_shared<ExtcapOptions>();
   command->add_flag("--extcap-interfaces", options->wants_interfaces, "lists the devices");
   command->add_flag("--extcap-dlts", options->wants_links, "what an interface's packets are");
   command->add_flag("--extcap-config", options->wants_settings, "what can be set");

@@ -28,7 +28,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr auto kHelp =
+constexpr auto kKinHelp =
     "Computes where an arm's tool is, and how to get it there.\n"
     "\n"
     "  armjig kin fk 90 -90 180 0 0 180                  joints in degrees -> pose in mm and "
@@ -40,7 +40,7 @@ constexpr auto kHelp =
     "Three angles mean nothing without their convention; each arm has that of its own programs\n"
     "unless --convention says another. Joints that slide are in mm.";
 
-struct Options {
+struct KinOptions {
   std::string arm = "parol6";
   std::string tip;
   std::string convention;
@@ -75,7 +75,7 @@ arm::ConventionName convention_named(arm::Convention convention) {
   return *std::ranges::find(arm::conventions(), convention, &arm::ConventionName::convention);
 }
 
-Outcome<Subject> subject_without_tool(const Options& options) {
+Outcome<Subject> subject_without_tool(const KinOptions& options) {
   const auto model = std::ranges::find(arm::models(), options.arm, &arm::ModelEntry::name);
   if (model != arm::models().end()) {
     return Subject{model->make(), convention_named(model->convention)};
@@ -98,7 +98,7 @@ arm::Pose pose_of(const std::vector<double>& numbers, arm::Convention convention
           {numbers[0] / 1000, numbers[1] / 1000, numbers[2] / 1000}};
 }
 
-Outcome<Subject> subject_of(const Options& options) {
+Outcome<Subject> subject_of(const KinOptions& options) {
   auto subject = subject_without_tool(options);
   if (!subject) return subject;
   if (!options.convention.empty()) {
@@ -171,7 +171,7 @@ json pose_json(const Subject& subject, const arm::Pose& pose) {
           {"convention", subject.convention.name}};
 }
 
-Exit forward_kinematics(const Options& options) {
+Exit forward_kinematics(const KinOptions& options) {
   const auto subject = subject_of(options);
   if (!subject) return report(subject.error());
   const auto joints = joints_of(subject->arm, options.numbers, "kin fk");
@@ -265,7 +265,7 @@ arm::JointVector middle_of(const arm::Arm& arm) {
   return joints;
 }
 
-Exit inverse_kinematics(const Options& options) {
+Exit inverse_kinematics(const KinOptions& options) {
   const auto subject = subject_of(options);
   if (!subject) return report(subject.error());
   const auto& arm = subject->arm;
@@ -305,7 +305,7 @@ Exit inverse_kinematics(const Options& options) {
 /// JSON has no infinity.
 json number_or_null(double value) { return std::isfinite(value) ? json(rounded(value)) : json(); }
 
-Exit limits(const Options& options) {
+Exit limits(const KinOptions& options) {
   const auto subject = subject_of(options);
   if (!subject) return report(subject.error());
   auto object = header("limits", *subject);
@@ -339,10 +339,10 @@ std::vector<std::string> convention_names() {
 
 CLI::Validator plain_number() { return number(-1e9, 1e9); }
 
-using Compute = Exit (*)(const Options&);
+using Compute = Exit (*)(const KinOptions&);
 
 CLI::App* add_computation(CLI::App& kin, const std::string& name, const std::string& what,
-                          const std::shared_ptr<Options>& options, Compute compute,
+                          const std::shared_ptr<KinOptions>& options, Compute compute,
                           Action& action) {
   auto* command = kin.add_subcommand(name, what);
   command->add_option("--arm", options->arm, "a name ('armjig kin --help') or a URDF file")
@@ -363,14 +363,14 @@ CLI::App* add_computation(CLI::App& kin, const std::string& name, const std::str
 }  // namespace
 
 void add_kin(CLI::App& app, Devices /*devices*/, Action& action) {
-  std::string help = kHelp;
+  std::string help = kKinHelp;
   help += "\n\nArms:\n";
   for (const auto& entry : arm::models()) {
     help += fmt::format("  {:<16} {}\n", entry.name, entry.what);
   }
   auto* kin = app.add_subcommand("kin", help);
   kin->require_subcommand(1);
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<KinOptions>();
   auto* fk = add_computation(*kin, "fk", "where the tool is", options, forward_kinematics, action);
   fk->add_option("JOINTS", options->numbers, "degrees (mm where a joint slides)")
       ->delimiter(',')

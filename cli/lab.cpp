@@ -20,7 +20,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kLabHelp =
     "Devices of which programs cannot tell that they are emulated.\n"
     "\n"
     "  armjig lab exec --i2c nodes.toml -- i2cdetect -y 1     a bus for one program\n"
@@ -45,7 +45,7 @@ constexpr auto kHelp =
     "--check\n"
     "1 for findings and 4 if nobody was told anything, unless the program failed itself.";
 
-struct Options {
+struct LabOptions {
   std::string nodes;
   int number = 1;
   bool wants_check = false;
@@ -56,7 +56,7 @@ struct Options {
 };
 
 /// Standard output is the program's.
-Exit conclude(const Report& result, const Options& options, const ReportOutputs& files,
+Exit conclude(const Report& result, const LabOptions& options, const ReportOutputs& files,
               Exit of_program) {
   fmt::print(stderr, "{}\n", to_text(result, style_of(options.colour, stderr)));
   files.put(result);
@@ -74,7 +74,7 @@ Outcome<const Device*> bus_device(Devices devices) {
   return problem(ErrorCode::kUnsupported, "--i2c", "this program has no device on a bus");
 }
 
-Exit exec(Devices devices, const Options& options) {
+Exit exec(Devices devices, const LabOptions& options) {
   if (options.nodes.empty()) {
     return report({ErrorCode::kBadValue, "--i2c is missing", "name a TOML file with the devices"});
   }
@@ -113,10 +113,10 @@ Exit exec(Devices devices, const Options& options) {
 }  // namespace
 
 void add_lab(CLI::App& app, Devices devices, Action& action) {
-  auto* lab = app.add_subcommand("lab", kHelp);
+  auto* lab = app.add_subcommand("lab", kLabHelp);
   lab->require_subcommand(1);
   auto* command = lab->add_subcommand("exec", "Runs a program that finds emulated devices.");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<LabOptions>();
   command->add_option("--i2c", options->nodes, "the devices of an I2C bus")
       ->type_name("NODES.toml");
   command->add_option("--bus", options->number, "its number, 0 to 255 (default: 1)")

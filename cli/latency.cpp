@@ -33,7 +33,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kHelp =
+constexpr auto kLatencyHelp =
     "Measures how long a device takes to answer, and says how far that can be believed.\n"
     "\n"
     "  armjig latency DEVICE --target pty:/tmp/arm\n"
@@ -49,7 +49,7 @@ constexpr auto kHelp =
     "Exit codes: 0 measured and within limits, 1 a limit is broken or it is slower, 3 the target\n"
     "is absent, refuses or is silent, or nothing can be said, 130 interrupted.";
 
-struct Options {
+struct LatencyOptions {
   std::string device;
   TargetOptions target;
   std::string against;
@@ -99,7 +99,7 @@ struct Wanted {
   std::optional<Baseline> baseline;
 };
 
-Outcome<Wanted> wanted_of(const Options& options) {
+Outcome<Wanted> wanted_of(const LatencyOptions& options) {
   Wanted wanted;
   wanted.plan.period.reset();
   if (!options.is_closed_loop) wanted.plan.period = duration_of(1 / options.rate);
@@ -133,7 +133,7 @@ Outcome<Wanted> wanted_of(const Options& options) {
   return wanted;
 }
 
-std::optional<Problem> problem_of(const Options& options, const RigOptions& how) {
+std::optional<Problem> problem_of(const LatencyOptions& options, const RigOptions& how) {
   const bool is_virtual = how.target.is_emulated();
   if (is_virtual && !options.load.empty()) {
     return Problem{ErrorCode::kBadValue, "--load", "it means nothing in virtual time"};
@@ -154,11 +154,11 @@ std::optional<Problem> problem_of(const Options& options, const RigOptions& how)
 /// What is told of one run: `rate=50`, and the options with that.
 struct Point {
   std::string name;
-  Options options;
+  LatencyOptions options;
 };
 
 /// One for each value of `--sweep`; without it the only one.
-Outcome<std::vector<Point>> points_of(const Options& options) {
+Outcome<std::vector<Point>> points_of(const LatencyOptions& options) {
   if (options.sweep.empty()) return std::vector{Point{{}, options}};
   constexpr std::size_t kMostPoints = 20;
   const auto wrong = [&options] {
@@ -313,7 +313,8 @@ Exit exit_of(const Report& report, const LatencyRun& run, const Signals& signals
 }
 
 /// A joint of the target, or of a usual one if that is not emulated.
-Outcome<std::unique_ptr<Follower>> open_follower(const Device& device, const Options& options) {
+Outcome<std::unique_ptr<Follower>> open_follower(const Device& device,
+                                                 const LatencyOptions& options) {
   const auto& text = options.target.target;
   return parse_target(text.starts_with("emulated:") ? text : "emulated:")
       .and_then([&device](Target target) {
@@ -322,7 +323,7 @@ Outcome<std::unique_ptr<Follower>> open_follower(const Device& device, const Opt
 }
 
 /// What the delays would cost the device's loop, in virtual time.
-Outcome<void> add_cost(LatencyRun& run, const Device& device, const Options& options) {
+Outcome<void> add_cost(LatencyRun& run, const Device& device, const LatencyOptions& options) {
   if (!options.has_cost || run.measured.round_trips.count() == 0) return {};
   JitterCostHow how{.limit = options.cost_limit, .seed = options.seed};
   if (run.plan.period) how.rate = 1e9 / static_cast<double>(run.plan.period->count());
@@ -343,7 +344,8 @@ void finish(LatencyRun& run, const Wanted& wanted) {
 }
 
 /// The run that is in the file, a recording or a log of histograms.
-Outcome<LatencyRun> parse_run(Devices devices, const Device& device, const Options& options) {
+Outcome<LatencyRun> parse_run(Devices devices, const Device& device,
+                              const LatencyOptions& options) {
   auto file = options.from == "-" ? UserFile::standard_input() : UserFile::open(options.from);
   if (!file) return tl::unexpected{std::move(file.error())};
   if (file->peek() == '#' || file->peek() == '"') {
@@ -368,7 +370,7 @@ Outcome<LatencyRun> parse_run(Devices devices, const Device& device, const Optio
   return run;
 }
 
-Outcome<LatencyRun> read_run(Devices devices, const Device& device, const Options& options) {
+Outcome<LatencyRun> read_run(Devices devices, const Device& device, const LatencyOptions& options) {
   auto run = parse_run(devices, device, options);
   if (!run) return run;
   if (run->measured.round_trips.count() == 0) {
@@ -388,7 +390,8 @@ struct Ended {
 
 /// Measures a target, or two in turn.
 Outcome<Ended> measure(const Device& device, std::span<const RigOptions> hows,
-                       const Options& options, const Wanted& wanted, const Signals& signals) {
+                       const LatencyOptions& options, const Wanted& wanted,
+                       const Signals& signals) {
   std::vector<std::unique_ptr<Station>> stations;
   for (const auto& one : hows) {
     auto station = Station::open(device, one, options.exchange);
@@ -459,7 +462,7 @@ Outcome<Ended> measure(const Device& device, std::span<const RigOptions> hows,
 }
 
 /// One target, or with `--against` two.
-Outcome<std::vector<RigOptions>> targets_of(const Options& options) {
+Outcome<std::vector<RigOptions>> targets_of(const LatencyOptions& options) {
   auto how = parse_target_options(options.target);
   if (!how) return tl::unexpected{how.error()};
   if (auto wrong = problem_of(options, *how)) return tl::unexpected{*std::move(wrong)};
@@ -477,7 +480,7 @@ Outcome<std::vector<RigOptions>> targets_of(const Options& options) {
   return hows;
 }
 
-Exit latency(Devices devices, const Options& options) {
+Exit latency(Devices devices, const LatencyOptions& options) {
   const auto found = find_device(devices, options.device);
   if (!found) return report(found.error());
   std::vector<RigOptions> hows;
@@ -531,8 +534,8 @@ Exit latency(Devices devices, const Options& options) {
 }  // namespace
 
 void add_latency(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("latency", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("latency", with_example(kLatencyHelp, devices));
+  const auto options = std::make_shared<LatencyOptions>();
   add_device_argument(*command, options->device, devices);
   add_target_options(*command, options->target);
   auto* against =

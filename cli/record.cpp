@@ -23,7 +23,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kRecordHelp =
     "Stands between a program and a device, passes every byte on, and records it.\n"
     "\n"
     "  armjig record DEVICE --listen pty:/tmp/arm --target TARGET --out session.pcapng\n"
@@ -172,7 +172,7 @@ Exit record(Devices devices, const RecordOptions& options) {
 }
 
 void add_record(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("record", with_example(kHelp, devices));
+  auto* command = app.add_subcommand("record", with_example(kRecordHelp, devices));
   const auto options = std::make_shared<RecordOptions>();
   add_device_argument(*command, options->device, devices);
   command

@@ -24,7 +24,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kReplayHelp =
     "Plays the host's side of a recording against a device and compares what the device says.\n"
     "\n"
     "  armjig replay session.jsonl --target emulated:                  in virtual time\n"
@@ -45,7 +45,7 @@ constexpr auto kHelp =
     "target,\n"
     "or it needs --allow, 4 nothing to compare.";
 
-struct Options {
+struct ReplayOptions {
   std::string file;
   TargetOptions target;
   ComparisonOptions comparison;
@@ -202,7 +202,7 @@ void forgive_ends(const Session& session, const Played& played, Duration toleran
   });
 }
 
-Exit replay(Devices devices, const Options& options) {
+Exit replay(Devices devices, const ReplayOptions& options) {
   const auto rules = rules_of(options.comparison.rules);
   if (!rules) return report(rules.error());
   const auto how = foreign_how(devices, options.foreign, {});
@@ -248,8 +248,8 @@ Exit replay(Devices devices, const Options& options) {
 }  // namespace
 
 void add_replay(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("replay", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("replay", kReplayHelp);
+  const auto options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", options->file, "a recording, '-' for standard input")->required();
   add_target_options(*command, options->target);
   add_comparison_options(*command, options->comparison);

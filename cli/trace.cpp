@@ -23,7 +23,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kTraceHelp =
     "Replays recordings into fresh emulators in virtual time and compares every byte.\n"
     "\n"
     "  armjig trace verify captures                 all recordings below a folder\n"
@@ -153,7 +153,7 @@ Exit verify_all(const std::vector<std::string>& paths, Devices devices) {
 void add_trace(CLI::App& app, Devices devices, Action& action) {
   auto* trace = app.add_subcommand("trace", "Recordings: verify, look at, convert, cut, merge");
   trace->require_subcommand(1);
-  auto* verify = trace->add_subcommand("verify", kHelp);
+  auto* verify = trace->add_subcommand("verify", kTraceHelp);
   const auto paths = std::make_shared<std::vector<std::string>>();
   verify->add_option("PATH", *paths, "files or folders")->required();
   verify->callback([paths, devices, &action] {

@@ -17,7 +17,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kTraceRandomHelp =
     "Writes sessions that nobody wrote: recordings of an emulated device of profile firmware and\n"
     "of clients that do everything, also what is wrong, in an order and at times drawn at random.\n"
     "\n"
@@ -29,7 +29,7 @@ constexpr auto kHelp =
 
 constexpr std::uint64_t kMostSessions = 1'000'000;
 
-struct Options {
+struct TraceRandomOptions {
   std::string device;
   std::uint64_t seed = 1;
   std::uint64_t count = 1;
@@ -47,7 +47,7 @@ Outcome<void> write_session(const Device& device, std::uint64_t seed,
   return OutputFile::open(path).and_then([&](const auto& file) { return file->put(*recording); });
 }
 
-Exit write_sessions(const Options& options, Devices devices) {
+Exit write_sessions(const TraceRandomOptions& options, Devices devices) {
   const auto device = find_device(devices, options.device);
   if (!device) return report(device.error());
   if ((*device)->draw_session == nullptr) {
@@ -69,8 +69,8 @@ Exit write_sessions(const Options& options, Devices devices) {
 }  // namespace
 
 void add_trace_random(CLI::App& trace, Devices devices, Action& action) {
-  auto* random = trace.add_subcommand("random", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  auto* random = trace.add_subcommand("random", with_example(kTraceRandomHelp, devices));
+  const auto options = std::make_shared<TraceRandomOptions>();
   add_device_argument(*random, options->device, devices);
   random->add_option("--seed", options->seed, "of the first session; 1 if not given")
       ->transform(whole(0, std::numeric_limits<std::uint64_t>::max()));

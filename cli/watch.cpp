@@ -23,7 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kHelp =
+constexpr auto kWatchHelp =
     "Shows what a device says of itself, live. Ctrl-C or q ends it.\n"
     "\n"
     "  armjig watch DEVICE --target pty:/tmp/arm\n"
@@ -40,7 +40,7 @@ constexpr auto kHelp =
     "\n"
     "Exit codes: 0 telemetry came, 3 none came or the target is gone.";
 
-struct Options {
+struct WatchOptions {
   std::string device;
   TargetOptions target;
   std::optional<double> rate;
@@ -57,7 +57,7 @@ enum class Form : std::uint8_t { kScreen, kLines, kJson };
 /// Somebody, or a file, that looks on until the end.
 class Viewer {
  public:
-  Viewer(Watched& watched, Watch& watch, const Options& options, Form form, Pace::By by)
+  Viewer(Watched& watched, Watch& watch, const WatchOptions& options, Form form, Pace::By by)
       : watched_{watched}, watch_{watch}, options_{options}, form_{form}, pace_{by, watched.now()} {
     if (form_ == Form::kScreen) screen_.emplace();
   }
@@ -123,7 +123,7 @@ class Viewer {
 
   Watched& watched_;
   Watch& watch_;
-  const Options& options_;
+  const WatchOptions& options_;
   Form form_;
   Pace pace_;
   Signals signals_;
@@ -132,18 +132,18 @@ class Viewer {
   std::chrono::steady_clock::time_point last_drawn_{};
 };
 
-Form form_of(const Options& options) {
+Form form_of(const WatchOptions& options) {
   if (options.json) return Form::kJson;
   return has_screen() ? Form::kScreen : Form::kLines;
 }
 
-Watch::Plan plan_of(const Options& options, Duration period) {
+Watch::Plan plan_of(const WatchOptions& options, Duration period) {
   Watch::Plan plan{.period = period, .count = options.count};
   if (options.seconds) plan.time = duration_of(*options.seconds);
   return plan;
 }
 
-Exit watch(Devices devices, const Options& options) {
+Exit watch(Devices devices, const WatchOptions& options) {
   const auto found = find_device(devices, options.device);
   if (!found) return report(found.error());
   const auto& device = **found;
@@ -184,8 +184,8 @@ Exit watch(Devices devices, const Options& options) {
 }  // namespace
 
 void add_watch(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("watch", with_example(kHelp, devices));
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("watch", with_example(kWatchHelp, devices));
+  const auto options = std::make_shared<WatchOptions>();
   add_device_argument(*command, options->device, devices);
   add_target_options(*command, options->target);
   command->add_option("--rate", options->rate, "questions a second, 1 to 1000 (default: as usual)")

@@ -17,7 +17,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kWiresharkHelp =
     "Lets Wireshark and tshark read what armjig records of a device.\n"
     "\n"
     "  armjig wireshark install                        dissectors and interfaces, for you\n"
@@ -112,7 +112,7 @@ Exit install(Devices devices, const std::string& to) {
 }  // namespace
 
 void add_wireshark(CLI::App& app, Devices devices, Action& action) {
-  auto* command = app.add_subcommand("wireshark", with_example(kHelp, devices));
+  auto* command = app.add_subcommand("wireshark", with_example(kWiresharkHelp, devices));
   command->require_subcommand(1);
 
   auto* dissector =

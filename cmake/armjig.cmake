@@ -20,6 +20,27 @@ if(ARMJIG_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${ARMJIG_CCACHE})
 endif()
 
+# armjig_unite(TARGET): with ARMJIG_UNITE its sources are compiled a dozen at a time, of one folder,
+# which takes a third of the time. So what files of one folder keep to themselves has names of its
+# own.
+function(armjig_unite target)
+  if(NOT ARMJIG_UNITE)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.cpp$")
+  list(SORT sources)
+  set(number 0)
+  foreach(source IN LISTS sources)
+    get_filename_component(folder ${source} DIRECTORY)
+    math(EXPR dozen "${number} / 12")
+    string(MAKE_C_IDENTIFIER "${folder}_${dozen}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    math(EXPR number "${number} + 1")
+  endforeach()
+endfunction()
+
 # Compiles into the library armjig_NAME where requirements stand in docs/spec (document_lines.cmake).
 function(armjig_document_lines name)
   file(GLOB documents CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
@@ -75,6 +96,7 @@ function(armjig_library name)
   target_compile_features(armjig_${name} PUBLIC cxx_std_20)
   target_link_libraries(armjig_${name} PUBLIC ${arg_PUBLIC}
                         PRIVATE ${arg_PRIVATE} ${arg_HEADERS_OF} $<BUILD_INTERFACE:armjig_flags>)
+  armjig_unite(armjig_${name})
   if(arg_EXACT_FLOATS)
     target_compile_options(armjig_${name} PRIVATE -ffp-contract=off)
   endif()

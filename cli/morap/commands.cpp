@@ -19,7 +19,7 @@ namespace {
 using namespace morap;
 using namespace morap::drive;
 
-constexpr auto kHelp =
+constexpr auto kMorapHelp =
     "Controllers of MORAP motor nodes: compute, program, read back, simulate.\n"
     "\n"
     "  armjig morap tune --type pd --inertia 0.2 --pole -9 > joint2.toml    as the node computes "
@@ -38,7 +38,7 @@ constexpr auto kHelp =
     "no\n"
     "such bus or node.";
 
-struct Options {
+struct MorapOptions {
   TargetOptions target;
   std::uint8_t node = 2;
   std::string motor{morap::kDcx22l.name};
@@ -47,11 +47,11 @@ struct Options {
   std::string controller = "both";
 };
 
-BusAddress address_of(const Options& options) { return {node_address(options.node)}; }
+BusAddress address_of(const MorapOptions& options) { return {node_address(options.node)}; }
 
 std::string hex_of(const Command& command) { return to_hex(encode(command).view()); }
 
-Exit conclude(const ProgramResult& result, const Options& options, const Rig<BusPort>& rig) {
+Exit conclude(const ProgramResult& result, const MorapOptions& options, const Rig<BusPort>& rig) {
   switch (result.outcome) {
     case ProgramOutcome::kDone:
       fmt::print("{}", to_toml(result.active));
@@ -65,7 +65,7 @@ Exit conclude(const ProgramResult& result, const Options& options, const Rig<Bus
 }
 
 template <class Work>
-Exit with_joint(const Device& device, const Options& options, Work work) {
+Exit with_joint(const Device& device, const MorapOptions& options, Work work) {
   auto rig = open_bus_rig(device, options.target);
   if (!rig) return report(rig.error());
   Master master{rig->port()};
@@ -75,7 +75,7 @@ Exit with_joint(const Device& device, const Options& options, Work work) {
 
 /// Nobody programs a motor that turns.
 template <class Work>
-Exit with_disabled_joint(const Device& device, const Options& options, Work work) {
+Exit with_disabled_joint(const Device& device, const MorapOptions& options, Work work) {
   return with_joint(device, options, [&](Joint& joint, const Rig<BusPort>& rig) {
     const auto code = joint.disable();
     if (code != BusCode::kOk) return report(code, joint.address(), rig);
@@ -83,12 +83,12 @@ Exit with_disabled_joint(const Device& device, const Options& options, Work work
   });
 }
 
-Exit tune_node(const Device& device, const Options& options) {
+Exit tune_node(const Device& device, const MorapOptions& options) {
   return with_disabled_joint(
       device, options, [&options](Joint& joint) { return joint.tune(options.tuning.request()); });
 }
 
-Exit tune(const Device& device, const Options& options) {
+Exit tune(const Device& device, const MorapOptions& options) {
   const auto request = options.tuning.request();
   if (const auto refusal = refusal_of(request); !refusal.empty()) {
     return report({ErrorCode::kBadValue, "--inertia, --pole", refusal});
@@ -104,7 +104,7 @@ Exit tune(const Device& device, const Options& options) {
   return Exit::kPassed;
 }
 
-Exit program(const Device& device, const Options& options) {
+Exit program(const Device& device, const MorapOptions& options) {
   const auto set = read_parameters(options.file);
   if (!set) return report(set.error());
   if (!is_safe(*set)) {
@@ -127,7 +127,7 @@ Exit read_parameters_of(Joint& joint, ControllerKind kind, const Rig<BusPort>& r
   return Exit::kPassed;
 }
 
-Exit read_params(const Device& device, const Options& options) {
+Exit read_params(const Device& device, const MorapOptions& options) {
   return with_joint(device, options, [&](Joint& joint, const Rig<BusPort>& rig) {
     if (options.controller != "speed") {
       const auto done = read_parameters_of(joint, ControllerKind::kPosition, rig);
@@ -138,11 +138,11 @@ Exit read_params(const Device& device, const Options& options) {
   });
 }
 
-using Run = Exit (*)(const Device& device, const Options& options);
+using Run = Exit (*)(const Device& device, const MorapOptions& options);
 
 /// What all that is done to a node have, last of their options.
-void add_to_node(CLI::App& command, const std::shared_ptr<Options>& options, const Device& device,
-                 Action& action, Run run) {
+void add_to_node(CLI::App& command, const std::shared_ptr<MorapOptions>& options,
+                 const Device& device, Action& action, Run run) {
   add_target_options(command, options->target);
   add_node_option(command, options->node);
   command.callback([options, run, &device, &action] {
@@ -153,7 +153,7 @@ void add_to_node(CLI::App& command, const std::shared_ptr<Options>& options, con
 void add_tune(CLI::App& morap, const Device& device, Action& action) {
   auto* command = morap.add_subcommand(
       "tune", "Computes a controller bit for bit as a node does, or lets a node do it.");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MorapOptions>();
   const auto added = add_tune_options(*command, options->tuning);
   for (auto* option : {added.type, added.inertia, added.pole}) option->required();
   add_motor_option(*command, options->motor);
@@ -162,7 +162,7 @@ void add_tune(CLI::App& morap, const Device& device, Action& action) {
 
 void add_program(CLI::App& morap, const Device& device, Action& action) {
   auto* command = morap.add_subcommand("program", "Brings the controller of a file into a node.");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MorapOptions>();
   command->add_option("FILE", options->file, "as 'morap tune' and 'morap read-params' write it")
       ->required()
       ->type_name("");
@@ -171,7 +171,7 @@ void add_program(CLI::App& morap, const Device& device, Action& action) {
 
 void add_read_params(CLI::App& morap, const Device& device, Action& action) {
   auto* command = morap.add_subcommand("read-params", "Shows the active controllers of a node.");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MorapOptions>();
   command->add_option("--controller", options->controller, "which of them")
       ->check(one_of({"position", "speed", "both"}))
       ->capture_default_str();
@@ -181,7 +181,7 @@ void add_read_params(CLI::App& morap, const Device& device, Action& action) {
 }  // namespace
 
 void add_morap(CLI::App& app, const Device& device, Action& action) {
-  auto* morap = app.add_subcommand("morap", kHelp);
+  auto* morap = app.add_subcommand("morap", kMorapHelp);
   morap->require_subcommand(1);
   add_tune(*morap, device, action);
   add_program(*morap, device, action);

@@ -24,7 +24,7 @@ namespace {
 using morap::drive::BusCode;
 using morap::drive::Master;
 
-constexpr auto kHelp =
+constexpr auto kI2cHelp =
     "Single transactions on an I2C bus, and what they mean to MORAP nodes and the pen.\n"
     "\n"
     "  armjig i2c scan --target i2c:/dev/i2c-1\n"
@@ -39,7 +39,7 @@ constexpr auto kHelp =
 
 constexpr std::size_t kLongestRead = 8192;
 
-struct Options {
+struct I2cOptions {
   TargetOptions target;
   unsigned address = 0;
   std::size_t count = 1;
@@ -87,7 +87,7 @@ Outcome<std::vector<std::byte>> parse_bytes(const std::vector<std::string>& word
                  "write two digits for each byte");
 }
 
-Exit scan(const Device& device, const Options& options) {
+Exit scan(const Device& device, const I2cOptions& options) {
   auto rig = open_bus_rig(device, options.target);
   if (!rig) return report(rig.error());
   const auto found = Master{rig->port()}.scan();
@@ -108,8 +108,8 @@ Exit scan(const Device& device, const Options& options) {
 /// Opens the bus and does `work(master, address, bytes)`, which answers how its last transaction
 /// ended.
 template <class Work>
-Exit with_bytes(const Device& device, const Options& options, const std::vector<std::string>& words,
-                Work work) {
+Exit with_bytes(const Device& device, const I2cOptions& options,
+                const std::vector<std::string>& words, Work work) {
   const auto bytes = parse_bytes(words);
   if (!bytes) return report(bytes.error());
   auto rig = open_bus_rig(device, options.target);
@@ -120,7 +120,7 @@ Exit with_bytes(const Device& device, const Options& options, const std::vector<
   return code == BusCode::kOk ? Exit::kPassed : report(code, address, *rig);
 }
 
-Exit write(const Device& device, const Options& options) {
+Exit write(const Device& device, const I2cOptions& options) {
   const auto transmit = [&](Master& master, BusAddress address, Bytes bytes) {
     const auto code = master.transmit(address, bytes);
     if (code != BusCode::kOk) return code;
@@ -130,7 +130,7 @@ Exit write(const Device& device, const Options& options) {
   return with_bytes(device, options, options.hex, transmit);
 }
 
-Exit read(const Device& device, const Options& options) {
+Exit read(const Device& device, const I2cOptions& options) {
   const auto receive = [&](Master& master, BusAddress address, Bytes choice) {
     Transcript transcript{options.wants_json};
     if (!choice.empty()) {
@@ -146,10 +146,10 @@ Exit read(const Device& device, const Options& options) {
   return with_bytes(device, options, options.select, receive);
 }
 
-using Run = Exit (*)(const Device& device, const Options& options);
+using RunOnBus = Exit (*)(const Device& device, const I2cOptions& options);
 
 CLI::App* add(CLI::App& app, const Device& device, Action& action, const char* name,
-              const char* help, const std::shared_ptr<Options>& options, Run run) {
+              const char* help, const std::shared_ptr<I2cOptions>& options, RunOnBus run) {
   auto* command = app.add_subcommand(name, help);
   add_target_options(*command, options->target);
   command->add_flag("--json", options->wants_json, "one JSON object a line");
@@ -159,7 +159,7 @@ CLI::App* add(CLI::App& app, const Device& device, Action& action, const char* n
   return command;
 }
 
-void add_address(CLI::App& command, Options& options) {
+void add_address(CLI::App& command, I2cOptions& options) {
   command.add_option("ADDRESS", options.address, "seven bits, as in 0x12")
       ->required()
       ->type_name("")
@@ -169,9 +169,9 @@ void add_address(CLI::App& command, Options& options) {
 }  // namespace
 
 void add_i2c(CLI::App& app, const Device& device, Action& action) {
-  auto* i2c = app.add_subcommand("i2c", kHelp);
+  auto* i2c = app.add_subcommand("i2c", kI2cHelp);
   i2c->require_subcommand(1);
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<I2cOptions>();
   add(*i2c, device, action, "scan", "Who answers, at the addresses 08 to 77.", options, scan);
   auto* reading = add(*i2c, device, action, "read", "Reads bytes from a device.", options, read);
   add_address(*reading, *options);

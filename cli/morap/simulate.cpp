@@ -28,7 +28,7 @@ using namespace morap;
 using namespace morap::drive;
 using namespace morap::emulation;
 
-constexpr auto kHelp =
+constexpr auto kSimulateHelp =
     "A step response of an emulated node, as numbers and plots.\n"
     "\n"
     "  armjig morap simulate --type pid --inertia 0.2 --pole -6 --step 0.3\n"
@@ -41,7 +41,7 @@ constexpr auto kHelp =
     ",\n"
     "in rad or rad/s; further columns and lines that do not begin with a number are passed over.";
 
-struct Options {
+struct SimulateOptions {
   TuneArguments tuning;
   std::string params;
   std::string motor{kDcx22l.name};
@@ -57,7 +57,7 @@ struct Options {
   std::string beside;
 };
 
-Outcome<StepTest> test_of(const Options& options) {
+Outcome<StepTest> test_of(const SimulateOptions& options) {
   StepTest test;
   test.reference = static_cast<float>(options.step);
   test.length = duration_of(options.seconds);
@@ -120,7 +120,7 @@ Series series_of(const StepResponse& response, std::string name, double StepSamp
 /// Of a recording, for the legend.
 std::string name_of(const std::string& path) { return std::filesystem::path{path}.stem().string(); }
 
-std::vector<Plot> plots_of(const StepResponse& response, const Options& options,
+std::vector<Plot> plots_of(const StepResponse& response, const SimulateOptions& options,
                            std::vector<PlotPoint> recording) {
   const bool is_speed = response.controller.kind == ControllerKind::kSpeed;
   const std::string unit = is_speed ? "speed / (rad/s)" : "angle / rad";
@@ -138,12 +138,12 @@ std::vector<Plot> plots_of(const StepResponse& response, const Options& options,
           {"Current", time, {"current / A"}, {series_of(response, {}, &StepSample::amperes)}}};
 }
 
-std::string controller_of(const Options& options) {
+std::string controller_of(const SimulateOptions& options) {
   if (!options.params.empty()) return options.params;
   return fmt::format("{}, pole {} 1/s", options.tuning.type, options.tuning.pole);
 }
 
-Report report_of(const StepResponse& response, const Options& options,
+Report report_of(const StepResponse& response, const SimulateOptions& options,
                  std::vector<PlotPoint> recording) {
   const bool has_settled = wording::seconds(response.settling) < options.seconds;
   Report report;
@@ -168,7 +168,7 @@ Report report_of(const StepResponse& response, const Options& options,
   return report;
 }
 
-Exit simulate(const Options& options) {
+Exit simulate(const SimulateOptions& options) {
   const auto test = test_of(options);
   if (!test) return cli::report(test.error());
   std::vector<PlotPoint> recording;
@@ -195,7 +195,7 @@ Exit simulate(const Options& options) {
   return Exit::kPassed;
 }
 
-void add_plant_options(CLI::App& command, Options& options) {
+void add_plant_options(CLI::App& command, SimulateOptions& options) {
   const auto add = [&command](const char* name, double& value, const char* what, const char* unit,
                               double least, double most) {
     command.add_option(name, value, what)
@@ -213,8 +213,8 @@ void add_plant_options(CLI::App& command, Options& options) {
 }  // namespace
 
 void add_morap_simulate(CLI::App& morap, Action& action) {
-  auto* command = morap.add_subcommand("simulate", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = morap.add_subcommand("simulate", kSimulateHelp);
+  const auto options = std::make_shared<SimulateOptions>();
   const auto tuning = add_tune_options(*command, options->tuning);
   tuning.inertia->required();
   auto* params = command

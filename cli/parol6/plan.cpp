@@ -18,7 +18,7 @@
 namespace armjig::cli {
 namespace {
 
-constexpr auto kHelp =
+constexpr auto kPlanHelp =
     "Computes what an RBTscript program sends, without an arm.\n"
     "\n"
     "  armjig plan pick.rbt                              its moves as a table\n"
@@ -33,7 +33,7 @@ constexpr auto kHelp =
     "Exit codes: 0 planned, 1 the plan ends early at a singularity, 2 it cannot be read or "
     "planned.";
 
-struct Options {
+struct PlanOptions {
   ScriptOptions script;
   PlanningOptions planning;
   std::string csv;
@@ -58,7 +58,7 @@ std::string as_capture(std::string lines, CaptureFormat format) {
   return text;
 }
 
-Exit plan(const Options& options) {
+Exit plan(const PlanOptions& options) {
   const auto planning = parse_planning(options.planning);
   if (!planning) return report(planning.error());
   const auto format = capture_format_of(options.capture);
@@ -94,8 +94,8 @@ Exit plan(const Options& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, const Device& /*device*/, Action& action) {
-  auto* command = app.add_subcommand("plan", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("plan", kPlanHelp);
+  const auto options = std::make_shared<PlanOptions>();
   add_script_options(*command, options->script);
   add_planning_options(*command, options->planning);
   const auto add_output = [command](const char* name, std::string& path, const char* help) {

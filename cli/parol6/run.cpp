@@ -30,7 +30,7 @@ namespace {
 using namespace std::chrono_literals;
 using parol6::drive::Activity;
 
-constexpr auto kHelp =
+constexpr auto kRunHelp =
     "Runs an RBTscript program on an arm and says how well the arm followed.\n"
     "\n"
     "  armjig run pick.rbt --target emulated: --home\n"
@@ -45,7 +45,7 @@ constexpr auto kHelp =
     "3\n"
     "the target is silent, gone or forbidden, 130 interrupted.";
 
-struct Options {
+struct RunOptions {
   ScriptOptions script;
   PlanningOptions planning;
   TargetOptions target;
@@ -174,7 +174,7 @@ std::optional<Halt> check_permissions(const script::Program& program, const RigO
 
 /// Brings the arm to where the program can begin, and plans it from there.
 std::optional<Halt> prepare(Session& session, const script::Program& program, Planning& planning,
-                            const Options& options, const Target& target) {
+                            const RunOptions& options, const Target& target) {
   if (auto halt = session.begin()) return halt;
   if (options.must_home) {
     if (auto halt = session.home()) return halt;
@@ -200,7 +200,7 @@ Outcome<Plots> open_plots(const std::string& folder) {
 
 /// Prints what came of it.
 Exit run_on(Session& session, const script::Program& program, Planning planning,
-            const Options& options, const Target& target, const Plots& files) {
+            const RunOptions& options, const Target& target, const Plots& files) {
   const auto say = [&](const Halt& halt) {
     if (!halt.text.empty()) {
       fmt::print(stderr, "armjig: {}: {}\n", options.target.target, halt.text);
@@ -230,7 +230,7 @@ Exit run_on(Session& session, const script::Program& program, Planning planning,
   return halt ? say(*halt) : Exit::kPassed;
 }
 
-Exit run(const Device& device, const Options& options) {
+Exit run(const Device& device, const RunOptions& options) {
   auto planning = parse_planning(options.planning);
   if (!planning) return report(planning.error());
   if (options.is_unhomed)
@@ -266,8 +266,8 @@ Exit run(const Device& device, const Options& options) {
 }  // namespace
 
 void add_run(CLI::App& app, const Device& device, Action& action) {
-  auto* command = app.add_subcommand("run", kHelp);
-  const auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("run", kRunHelp);
+  const auto options = std::make_shared<RunOptions>();
   add_script_options(*command, options->script);
   add_planning_options(*command, options->planning);
   add_target_options(*command, options->target);

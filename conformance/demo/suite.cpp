@@ -41,7 +41,7 @@ class MachineBench final : public StreamBench {
 
 enum Start : std::uint8_t { kHalted };
 
-constexpr Clause kClauses[] = {
+constexpr Clause kSuiteClauses[] = {
     must("demo.query", "A query is answered with the state.", "made up here"),
     look("A halted device says so.",
          [](MachineBench& machine) {
@@ -70,7 +70,7 @@ constexpr std::array kStarts{StartState{"halted", Hazard::kObserve}};
 }  // namespace
 
 Suite suite() noexcept {
-  static const std::array kChapters{chapter("The machine", kClauses)};
+  static const std::array kChapters{chapter("The machine", kSuiteClauses)};
   return {"demo", "1", kChapters, kStarts, shipped_document("docs/spec/demo.md")};
 }
 

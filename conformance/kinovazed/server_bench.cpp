@@ -516,7 +516,7 @@ void ServerBench::bring_to(std::size_t start) {
   if (start_ == kOff) return;
   if (mode_said_) pause(*mode_said_ + kBetweenModes - now());
   initialize();
-  if (start_ == kSteering) perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+  if (start_ == kInMode) perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
   if (start_ == kFolded) perform("Retract", Event::kRetracted);
   about({});
 }

@@ -17,12 +17,12 @@ namespace armjig::kinovazed::conformance {
 /// The states in which cases begin, as indices into the suite's `starts`. One client is connected,
 /// and nothing is under way.
 enum Start : std::uint8_t {
-  kStopped,   ///< emergencyStopped
-  kOff,       ///< poweredOff
-  kReady,     ///< idle, the arm at its ready pose
-  kSteering,  ///< in mode XYZ, the arm at its ready pose
-  kFolded,    ///< retracted
-  kFresh,     ///< just started, nothing was said yet
+  kStopped,  ///< emergencyStopped
+  kOff,      ///< poweredOff
+  kReady,    ///< idle, the arm at its ready pose
+  kInMode,   ///< in mode XYZ, the arm at its ready pose
+  kFolded,   ///< retracted
+  kFresh,    ///< just started, nothing was said yet
 };
 
 /// A message of the server and when it was read. `order` counts all messages of a connection.

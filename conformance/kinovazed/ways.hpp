@@ -24,7 +24,7 @@ inline constexpr Duration kBeforeBeat = std::chrono::milliseconds{420};
     case State::kPoweredOff:
       return kOff;
     case State::kSteering:
-      return kSteering;
+      return kInMode;
     case State::kInitializing:
     case State::kRetracted:
     case State::kUnfolding:

@@ -15,22 +15,22 @@ struct Row {
 };
 using enum State;
 using enum Operation;
-constexpr std::array kTable{
+constexpr std::array kTransitions{
     Row{kReady, kQuery, kReady},     Row{kReady, kStart, kRunning},
     Row{kReady, kHalt, kHalted},     Row{kRunning, kQuery, kRunning},
     Row{kRunning, kStart, kRunning},  // asking twice is fine
     Row{kRunning, kHalt, kHalted},   Row{kHalted, kQuery, kHalted},
     Row{kHalted, kStart, kRunning},  Row{kHalted, kHalt, kHalted},
 };
-static_assert(kTable.size() == std::size_t{3} * 3, "a row for every state and operation");
+static_assert(kTransitions.size() == std::size_t{3} * 3, "a row for every state and operation");
 
 }  // namespace
 
 State Machine::act(Operation operation) noexcept {
-  const auto row = std::ranges::find_if(kTable, [&](const Row& candidate) {
+  const auto row = std::ranges::find_if(kTransitions, [&](const Row& candidate) {
     return candidate.state == state_ && candidate.operation == operation;
   });
-  if (row == kTable.end()) return kUnknownOperation;
+  if (row == kTransitions.end()) return kUnknownOperation;
   state_ = row->next;
   return state_;
 }

@@ -9,7 +9,7 @@ namespace armjig {
 namespace {
 
 /// A client whose bytes the server leaves is not read any further.
-constexpr std::size_t kMostUnread = std::size_t{16} * 1024;
+constexpr std::size_t kMostUnreadOfClient = std::size_t{16} * 1024;
 /// More clients than that wait in the kernel's backlog.
 constexpr std::size_t kMostClients = 16;
 
@@ -82,14 +82,15 @@ class ServerFront final : public Front {
     }
     ++statistics_.clients;
     clients_[*id] = client;
-    client->start({.wants_bytes = [this, id = *id] { return server_.unread(id) < kMostUnread; },
-                   .on_bytes =
-                       [this, id = *id](Bytes bytes) {
-                         server_.receive(loop_.catch_up(), id, bytes);
-                         loop_.pump();
-                       },
-                   .on_end = [this, id = *id](TcpConnection::End end) { on_end(id, end); }},
-                  statistics_);
+    client->start(
+        {.wants_bytes = [this, id = *id] { return server_.unread(id) < kMostUnreadOfClient; },
+         .on_bytes =
+             [this, id = *id](Bytes bytes) {
+               server_.receive(loop_.catch_up(), id, bytes);
+               loop_.pump();
+             },
+         .on_end = [this, id = *id](TcpConnection::End end) { on_end(id, end); }},
+        statistics_);
     loop_.pump();
   }
 

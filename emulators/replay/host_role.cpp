@@ -17,36 +17,36 @@ namespace armjig {
 namespace {
 
 using namespace std::chrono_literals;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using Arrival = SessionPort::Arrival;
 using Records = std::span<const KeptRecord>;
 
 constexpr auto kConnectPatience = 2s;
 constexpr auto kTurn = 1ms;  ///< of each connection, if several are open
 
-Json details_of(const KeptRecord& record) {
-  auto json = Json::parse('{' + record.details + '}', nullptr, /*allow_exceptions=*/false);
-  return json.is_object() ? json : Json::object();
+OrderedJson details_of(const KeptRecord& record) {
+  auto json = OrderedJson::parse('{' + record.details + '}', nullptr, /*allow_exceptions=*/false);
+  return json.is_object() ? json : OrderedJson::object();
 }
 
 /// The other way round.
-std::string members_of(const Json& json) {
-  const auto text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string members_of(const OrderedJson& json) {
+  const auto text = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
   return text.substr(1, text.size() - 2);
 }
 
-std::string text_of(const Json& json, const char* key) {
-  const auto value = json.value(key, Json{});
+std::string text_of(const OrderedJson& json, const char* key) {
+  const auto value = json.value(key, OrderedJson{});
   return value.is_string() ? value.get<std::string>() : std::string{};
 }
 
 template <class Number>
-Number number_of(const Json& json, const char* key, Number otherwise) {
-  const auto value = json.value(key, Json{});
+Number number_of(const OrderedJson& json, const char* key, Number otherwise) {
+  const auto value = json.value(key, OrderedJson{});
   return value.is_number_integer() ? value.get<Number>() : otherwise;
 }
 
-std::string name_of_event(const Json& json) {
+std::string name_of_event(const OrderedJson& json) {
   const auto name = text_of(json, "dir");
   return name.empty() ? text_of(json, "op") : name;
 }
@@ -91,7 +91,7 @@ class Playing {
     played_.actual.push_back(std::move(like));
   }
   /// An input that was set by hand. Answers false if it is none.
-  bool touch(Endpoint& port, const Json& event) {
+  bool touch(Endpoint& port, const OrderedJson& event) {
     if (name_of_event(event) != "input") return false;
     const auto name = text_of(event, "name");
     if (!name.empty() && port.touch(name, number_of<std::int64_t>(event, "value", 0))) {
@@ -192,7 +192,7 @@ class ServerPlaying : public Playing {
     bool is_open = false;
   };
 
-  static std::uint32_t id_of(const Json& event) {
+  static std::uint32_t id_of(const OrderedJson& event) {
     return number_of<std::uint32_t>(event, "conn", 0);
   }
   /// What became of other failures, answers tell.
@@ -329,7 +329,7 @@ class BusPlaying : public Playing {
  private:
   struct Part {
     KeptRecord record;
-    Json details;
+    OrderedJson details;
     std::vector<std::byte> read;
     std::string acks{};
     std::string error{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 
 /// What `CaptureReader::open` and `make_capture_writer` choose from.
 namespace armjig {
+
+inline constexpr std::uint32_t kLastCanId = 0x1FFF'FFFF;
 
 [[nodiscard]] Outcome<std::unique_ptr<CaptureReader>> open_lines(UserFile file,
                                                                  const std::string& path);

@@ -17,7 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kLastCanId = 0x1FFF'FFFF;
 constexpr std::size_t kMostCanBytes = 8;
 constexpr std::int64_t kNsPerUs = 1000;
 

@@ -39,7 +39,6 @@ constexpr std::size_t kBusHeaderBytes = 6;  // bus, flags, address
 constexpr std::size_t kCanHeaderBytes = 8;  // identifier, length, reserved
 constexpr std::uint32_t kExtendedCan = 0x8000'0000;
 constexpr std::uint32_t kLastShortCanId = 0x7FF;
-constexpr std::uint32_t kLastCanId = 0x1FFF'FFFF;
 
 void put(std::vector<std::byte>& out, std::uint64_t value, std::size_t size) {
   for (auto i = size; i-- > 0;) out.push_back(static_cast<std::byte>(value >> 8 * i));

@@ -20,7 +20,7 @@
 namespace armjig {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// Numbers in traces are whole; this keeps sums with them inside 64 bits.
 constexpr std::int64_t kLatestMicroseconds = INT64_C(9'000'000'000'000'000);

@@ -10,8 +10,6 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = MeterEvent::Kind;
 
-/// How long nobody asks whether to end.
-constexpr Duration kSlice = 100ms;
 /// In which late answers are thrown away after one was lost, or they would be taken for others'.
 constexpr Duration kSettle = 100ms;
 
@@ -93,7 +91,7 @@ Result<void> Meter::send_burst(Instant deadline) {
 Result<void> Meter::wait_for_answers() {
   while (book_.pending() > 0) {
     const auto patience = book_.oldest() + plan_.patience;
-    const auto arrival = path_.receive(buffer_, std::min(patience, path_.now() + kSlice));
+    const auto arrival = path_.receive(buffer_, std::min(patience, path_.now() + kLookAbout));
     if (!arrival) return tl::unexpected{arrival.error()};
     if (arrival->size > 0) {
       take(*arrival);
@@ -111,7 +109,7 @@ Result<void> Meter::wait_for_answers() {
 /// Answers that come now are nobody's.
 Result<void> Meter::listen_until(Instant time) {
   while (path_.now() < time && !must_end_()) {
-    const auto arrival = path_.receive(buffer_, std::min(time, path_.now() + kSlice));
+    const auto arrival = path_.receive(buffer_, std::min(time, path_.now() + kLookAbout));
     if (!arrival) return tl::unexpected{arrival.error()};
     if (arrival->size > 0) take(*arrival);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -11,6 +12,9 @@
 #include "harness/rig/direct_line.hpp"
 
 namespace armjig {
+
+/// Who receives looks about so often, whether to end.
+inline constexpr Duration kLookAbout = std::chrono::milliseconds{100};
 
 /// How requests leave and answers come. Between `send` and the `receive` that has the answer,
 /// nothing else is done.

@@ -8,15 +8,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long nobody asks whether to end.
-constexpr Duration kSlice = 100ms;
-
 /// Takes what comes, until an answer is among it if one is waited for, or until `end`.
 Result<void> listen(Path& path, Probe& probe, Instant end, bool is_waiting,
                     const std::function<bool()>& must_end) {
   std::array<std::byte, 4096> buffer;
   while (path.now() < end && !must_end()) {
-    const auto arrival = path.receive(buffer, std::min(end, path.now() + kSlice));
+    const auto arrival = path.receive(buffer, std::min(end, path.now() + kLookAbout));
     if (!arrival) return tl::unexpected{arrival.error()};
     if (arrival->size == 0) continue;
     const auto bytes = Bytes{buffer}.first(arrival->size);

@@ -12,7 +12,7 @@
 namespace armjig {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using Verdicts = std::map<std::string, std::string>;
 
 Outcome<Verdicts> read(std::string_view text, const std::string& name) {

@@ -14,8 +14,8 @@
 namespace armjig {
 namespace {
 
-constexpr double kUnitsHigh = 1000;  // of all strips, whatever they show
-constexpr std::size_t kStyles = 8;   // that the style sheet has for curves
+constexpr double kStripUnits = 1000;     // of all strips, whatever they show
+constexpr std::size_t kCurveStyles = 8;  // that the style sheet has for curves
 
 std::string safe(std::string_view text) { return wording::html(wording::line(text)); }
 
@@ -25,7 +25,7 @@ std::string strip_begin(double seconds, std::string_view label) {
   return fmt::format(
       "<div class=\"strip\"><svg viewBox=\"0 0 {:.9g} {:g}\" preserveAspectRatio=\"none\" "
       "role=\"img\" aria-label=\"{}\">\n",
-      seconds, kUnitsHigh, label);
+      seconds, kStripUnits, label);
 }
 
 std::string chart_html(const TimelineChart& chart, double seconds) {
@@ -38,7 +38,7 @@ std::string chart_html(const TimelineChart& chart, double seconds) {
     }
   }
   const auto height = [&](double value) {
-    return high > low ? kUnitsHigh * (high - value) / (high - low) : kUnitsHigh / 2;
+    return high > low ? kStripUnits * (high - value) / (high - low) : kStripUnits / 2;
   };
   auto html = fmt::format("<div class=\"track chart\"><div><h4>{}</h4><ul class=\"legend\">\n",
                           safe(chart.title));
@@ -48,8 +48,8 @@ std::string chart_html(const TimelineChart& chart, double seconds) {
     fmt::format_to(end_of(html),
                    "<li><svg width=\"18\" height=\"8\" aria-hidden=\"true\"><path class=\"line "
                    "s{0}\" d=\"M0 4H18\"/></svg>{1}</li>\n",
-                   i % kStyles, safe(curve.name));
-    fmt::format_to(end_of(paths), "<path class=\"line s{}\" d=\"", i % kStyles);
+                   i % kCurveStyles, safe(curve.name));
+    fmt::format_to(end_of(paths), "<path class=\"line s{}\" d=\"", i % kCurveStyles);
     char command = 'M';
     for (const auto& stretch : curve.stretches) {
       fmt::format_to(end_of(paths), "{}{:.7g} {:.4g}", std::exchange(command, 'L'), stretch.seconds,

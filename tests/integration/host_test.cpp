@@ -32,7 +32,7 @@ using ::testing::StartsWith;
 namespace fs = std::filesystem;
 
 // The demo device (harness/wire/demo): a request is A5 op ~op, its reply 5A state ~state.
-constexpr std::array kQuery{std::byte{0xA5}, std::byte{'q'}, std::byte{0xFF ^ 'q'}};
+constexpr std::array kEnabledQuery{std::byte{0xA5}, std::byte{'q'}, std::byte{0xFF ^ 'q'}};
 constexpr auto kReady = "5a00ff";
 
 // The shortest frame that a PAROL6 board answers: length 2, both of them end bytes (dossier 2.2).
@@ -95,8 +95,8 @@ std::vector<std::byte> read(StreamPort& port, std::size_t size) {
 }
 
 std::string ask(StreamPort& port) {
-  EXPECT_TRUE(port.write(kQuery));
-  return to_hex(read(port, kQuery.size()));
+  EXPECT_TRUE(port.write(kEnabledQuery));
+  return to_hex(read(port, kEnabledQuery.size()));
 }
 
 std::unique_ptr<StreamPort> open_or_die(Outcome<std::unique_ptr<StreamPort>> port) {
@@ -377,7 +377,7 @@ TEST(HostOnTcp, SurvivesAReset) {
   const auto session = std::move(make_tcp_session(host.tcp()).value());
   for (int i = 0; i < 5; ++i) {
     ASSERT_TRUE(session->connect(session->now() + testing::kPatience));
-    ASSERT_TRUE(session->send(kQuery));
+    ASSERT_TRUE(session->send(kEnabledQuery));
     session->reset();
   }
   EXPECT_EQ(ask(*open_or_die(open_tcp_stream(host.tcp()))), kReady);
@@ -387,7 +387,7 @@ TEST(HostOnTcp, AnswersAClientThatHasEndedItsSending) {
   const Running host{demo_device()};
   const auto session = std::move(make_tcp_session(host.tcp()).value());
   ASSERT_TRUE(session->connect(session->now() + testing::kPatience));
-  ASSERT_TRUE(session->send(kQuery));
+  ASSERT_TRUE(session->send(kEnabledQuery));
   session->half_close();
   std::array<std::byte, 8> buffer;
   auto received = session->receive(buffer, session->now() + testing::kPatience);

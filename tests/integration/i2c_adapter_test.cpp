@@ -19,8 +19,8 @@
 namespace armjig {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 constexpr BusAddress kNode{0x12};
 constexpr BusAddress kThermometer{0x48};
@@ -35,9 +35,9 @@ std::vector<std::string> heard;
 std::vector<Instant> times;
 
 /// A judge that writes down what it is shown.
-class Listener final : public ProgramChecker {
+class Overhearing final : public ProgramChecker {
  public:
-  explicit Listener(const LinkNoise& /*noise*/) {}
+  explicit Overhearing(const LinkNoise& /*noise*/) {}
 
   void to_device(Instant time, Bytes message) override {
     heard.push_back(to_hex(message));
@@ -49,7 +49,7 @@ class Listener final : public ProgramChecker {
 };
 
 /// What is heard of an adapter's bus.
-class I2cAdapterTest : public testing::Test {
+class I2cAdapterTest : public ::testing::Test {
  protected:
   I2cAdapterTest() {
     heard.clear();
@@ -59,7 +59,7 @@ class I2cAdapterTest : public testing::Test {
   int transfer(const std::vector<BusMessage>& messages) { return adapter->transfer(messages); }
 
   ProgramCheck check{
-      {"test", []() noexcept { return std::span<const Requirement>{}; }, make_checker<Listener>},
+      {"test", []() noexcept { return std::span<const Requirement>{}; }, make_checker<Overhearing>},
       {},
       [](const Offence& /*offence*/) {}};
   std::unique_ptr<I2cAdapter> adapter = I2cAdapter::open(check.watch(make_hosted(bus()))).value();

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 using Arrival = SessionPort::Arrival;
 using testing::Listener;
 
-Bytes bytes_of(std::string_view text) { return std::as_bytes(std::span{text}); }
+Bytes sent_text(std::string_view text) { return std::as_bytes(std::span{text}); }
 
 /// A server that does what the test says, and a session to it.
 class TcpSession : public ::testing::Test {
@@ -52,9 +52,9 @@ class TcpSession : public ::testing::Test {
 };
 
 TEST_F(TcpSession, CarriesSegmentsBothWays) {
-  ASSERT_TRUE(session->send(bytes_of("question")));
+  ASSERT_TRUE(session->send(sent_text("question")));
   EXPECT_EQ(testing::receive_plain(peer, 8), "question");
-  testing::send_plain(peer, bytes_of("answer"));
+  testing::send_plain(peer, sent_text("answer"));
   const auto received = receive();
   ASSERT_TRUE(received);
   EXPECT_EQ(received->arrival, Arrival::kData);
@@ -89,7 +89,7 @@ TEST_F(TcpSession, TellsAResetFromAnEnd) {
 TEST_F(TcpSession, TellsAResetThatSendingFoundFirst) {
   testing::close_with_reset(peer);
   Result<void> sent;
-  while (sent) sent = session->send(bytes_of("x"));
+  while (sent) sent = session->send(sent_text("x"));
   EXPECT_EQ(sent.error().code, ErrorCode::kDisconnected);
   expect_arrival(Arrival::kReset);
 }
@@ -97,16 +97,16 @@ TEST_F(TcpSession, TellsAResetThatSendingFoundFirst) {
 TEST_F(TcpSession, StillReadsAfterHalfClosing) {
   session->half_close();
   EXPECT_EQ(testing::receive_plain(peer, 1), "") << "the server sees the end";
-  testing::send_plain(peer, bytes_of("late"));
+  testing::send_plain(peer, sent_text("late"));
   const auto received = receive();
   ASSERT_TRUE(received);
   EXPECT_EQ(text(received->size), "late");
 }
 
 TEST_F(TcpSession, EndsInGoodOrderWithUnreadBytes) {
-  testing::send_plain(peer, bytes_of("unread"));
+  testing::send_plain(peer, sent_text("unread"));
   ASSERT_EQ(receive()->arrival, Arrival::kData) << "they have come";
-  testing::send_plain(peer, bytes_of("unread"));
+  testing::send_plain(peer, sent_text("unread"));
   session->close();
   std::byte byte{};
   EXPECT_EQ(::recv(peer.value(), &byte, 1, 0), 0) << "an end, no reset";
@@ -123,7 +123,7 @@ TEST_F(TcpSession, ConnectsAgainAfterClosing) {
   session->close();
   ASSERT_TRUE(session->connect(session->now() + testing::kPatience));
   const auto next = listener.accept();
-  ASSERT_TRUE(session->send(bytes_of("again")));
+  ASSERT_TRUE(session->send(sent_text("again")));
   EXPECT_EQ(testing::receive_plain(next, 5), "again");
 }
 
@@ -133,7 +133,7 @@ TEST_F(TcpSession, HasOneConnectionAtATime) {
 
 TEST_F(TcpSession, NeedsAConnection) {
   session->close();
-  EXPECT_EQ(session->send(bytes_of("x")), fail(ErrorCode::kDisconnected));
+  EXPECT_EQ(session->send(sent_text("x")), fail(ErrorCode::kDisconnected));
   EXPECT_EQ(receive(), fail(ErrorCode::kDisconnected));
 }
 

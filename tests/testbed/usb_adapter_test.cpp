@@ -29,9 +29,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const UsbfsDevice::Identity kAdapter{2, {0x0403, 0xC631}, "7A"};
-const UsbfsDevice::Identity kTwin{3, {0x0403, 0xC631}, "7B"};
+const UsbfsDevice::Identity kTwinAdapter{3, {0x0403, 0xC631}, "7B"};
 const UsbfsDevice::Identity kCousin{2, {0x1C40, 0x0534}, "7A"};
-const UsbfsDevice::Identity kModem{2, {0x0403, 0x6001}, "A1"};
+const UsbfsDevice::Identity kUsbModem{2, {0x0403, 0x6001}, "A1"};
 constexpr BusAddress kNode{0x12};
 constexpr BusAddress kNobody{0x13};
 
@@ -184,13 +184,13 @@ TEST_F(UsbAdapterBench, IsNotFoundWhereNoneIsPluggedIn) {
 }
 
 TEST_F(UsbAdapterBench, LeavesOtherDevicesAlone) {
-  const Plugged modem{bench_, kModem};
+  const Plugged modem{bench_, kUsbModem};
   EXPECT_EQ(problem_of_opening().code, ErrorCode::kNotFound);
 }
 
 TEST_F(UsbAdapterBench, ASecondOneMakesTheUserChoose) {
   const Plugged adapter{bench_, kAdapter};
-  const Plugged twin{bench_, kTwin};
+  const Plugged twin{bench_, kTwinAdapter};
   const auto problem = problem_of_opening();
   EXPECT_EQ(problem.code, ErrorCode::kBadTarget);
   EXPECT_THAT(problem.hint, AllOf(HasSubstr("'7A'"), HasSubstr("'7B'")));
@@ -199,7 +199,7 @@ TEST_F(UsbAdapterBench, ASecondOneMakesTheUserChoose) {
 
 TEST_F(UsbAdapterBench, ASerialNumberChooses) {
   const Plugged adapter{bench_, kAdapter};
-  const Plugged twin{bench_, kTwin};
+  const Plugged twin{bench_, kTwinAdapter};
   EXPECT_TRUE(opened("7B"));
   EXPECT_TRUE(twin.is_in_use());
   EXPECT_FALSE(adapter.is_in_use());

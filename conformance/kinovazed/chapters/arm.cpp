@@ -26,7 +26,7 @@ void expect_stop(ServerBench& server, std::string_view call, std::string_view co
   server.expect_beat(3);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kArmClauses[] = {
     must("kinovazed.arm.silent-stop",
          "A failure of the arm that can be repaired ends in emergencyStopped without a word; "
          "the next heartbeat shows it.",
@@ -139,6 +139,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter arm_chapter() { return chapter("Supervision of the arm", kClauses); }
+Chapter arm_chapter() { return chapter("Supervision of the arm", kArmClauses); }
 
 }  // namespace armjig::kinovazed::conformance

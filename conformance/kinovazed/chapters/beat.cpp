@@ -24,7 +24,7 @@ void lose_arm(ServerBench& server) {
 
 void find_arm(ServerBench& server) { server.touch("arm.fail.arm_open", 0); }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kBeatClauses[] = {
     must("kinovazed.beat.period", "The next heartbeat comes 1 s after the one before.",
          "server, recording heartbeat-period"),
     /// The median forgives a machine that stands still for a moment.
@@ -190,6 +190,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter beat_chapter() { return chapter("Heartbeats", kClauses); }
+Chapter beat_chapter() { return chapter("Heartbeats", kBeatClauses); }
 
 }  // namespace armjig::kinovazed::conformance

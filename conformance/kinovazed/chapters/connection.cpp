@@ -11,7 +11,7 @@ void connect_anew(ServerBench& server) {
   server.connect();
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kConnectionClauses[] = {
     must("kinovazed.connection.silent-start",
          "Nothing is sent because somebody connects: the first message is a heartbeat.",
          "server, recording connection-reconnect-idle"),
@@ -172,7 +172,7 @@ constexpr Clause kClauses[] = {
     must("kinovazed.connection.keeps-state",
          "Losing a client changes no state: the next one finds the joystick mode and may steer.",
          "server, transcript S4"),
-    from(kSteering, Hazard::kMove, "A client that connects while the server is steering may move.",
+    from(kInMode, Hazard::kMove, "A client that connects while the server is steering may move.",
          [](ServerBench& server) {
            connect_anew(server);
            server.expect_beat(69);
@@ -216,6 +216,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter connection_chapter() { return chapter("Connections", kClauses); }
+Chapter connection_chapter() { return chapter("Connections", kConnectionClauses); }
 
 }  // namespace armjig::kinovazed::conformance

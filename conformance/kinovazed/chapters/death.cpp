@@ -113,7 +113,7 @@ constexpr Case dies(std::string_view rule, CaseBody run) {
   return full(from(kReady, Hazard::kCrash, rule, run));
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kDeathClauses[] = {
     must("kinovazed.death.hang",
          "With its supervision dead the server keeps its connections, and sends nothing any "
          "more.",
@@ -250,6 +250,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter death_chapter() { return chapter("Deaths", kClauses); }
+Chapter death_chapter() { return chapter("Deaths", kDeathClauses); }
 
 }  // namespace armjig::kinovazed::conformance

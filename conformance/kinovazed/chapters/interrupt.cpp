@@ -45,7 +45,7 @@ void expect_not_ready(ServerBench& server, std::string_view command) {
   expect_time(server, time_of_initializing(server), 700ms, ServerBench::kMotionTime);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kInterruptClauses[] = {
     must("kinovazed.event.table",
          "The arm's own ends act where they are awaited: folding ends in retracted, unfolding "
          "and initializing in idle.",
@@ -241,6 +241,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter interrupt_chapter() { return chapter("Interrupts and ends", kClauses); }
+Chapter interrupt_chapter() { return chapter("Interrupts and ends", kInterruptClauses); }
 
 }  // namespace armjig::kinovazed::conformance

@@ -129,7 +129,7 @@ void two_modes(ServerBench& server) {
   server.say("SetJoystickMode:Rotation");
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kJoystickClauses[] = {
     must("kinovazed.mode.settles", "JoystickModeSet comes half a second behind a mode that moves.",
          "server, recording session-joystick-modes"),
     /// The shortest of three, for all that a link does makes it longer. A mode takes more turns
@@ -368,6 +368,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter joystick_chapter() { return chapter("Joystick", kClauses); }
+Chapter joystick_chapter() { return chapter("Joystick", kJoystickClauses); }
 
 }  // namespace armjig::kinovazed::conformance

@@ -130,7 +130,7 @@ constexpr std::array kTailsForSteering{"MoveJoystick:0.9:0:0"sv, "MoveJoystick:0
 
 constexpr std::array kBlanksForSteering{"MoveJoystick: 0:0:0"sv, "MoveJoystick:0:0: 0"sv};
 
-constexpr Clause kClauses[] = {
+constexpr Clause kLineClauses[] = {
     must("kinovazed.line.crlf", "CR LF ends a line.", "document; server, recording framing-crlf"),
     look("EStop and CR LF are answered once.",
          [](ServerBench& server) {
@@ -278,7 +278,7 @@ constexpr Clause kClauses[] = {
     variant("idle",
             from(kReady, Hazard::kMove, "In idle five lines that are no commands get no answer.",
                  on<not_understood<kBadAnywhere>>)),
-    variant("steering", from(kSteering, Hazard::kMove,
+    variant("steering", from(kInMode, Hazard::kMove,
                              "In steering five lines that are no commands get no answer.",
                              on<not_understood<kBadAnywhere>>)),
     variant("retracted", from(kFolded, Hazard::kMove,
@@ -376,13 +376,13 @@ constexpr Clause kClauses[] = {
          "server, recording joystick-numbers-ok"),
     variant("refused",
             look("MoveJoystick with signs is understood, and refused here.", on<refused<kSigns>>)),
-    from(kSteering, Hazard::kMove, "MoveJoystick with signs is Accepted.", on<moved<kSigns>>),
+    from(kInMode, Hazard::kMove, "MoveJoystick with signs is Accepted.", on<moved<kSigns>>),
 
     must("kinovazed.line.number-zeros", "A number may have zeros in front.",
          "server, recording joystick-numbers-ok"),
     variant("refused", look("MoveJoystick with zeros in front is understood, and refused here.",
                             on<refused<kZeros>>)),
-    from(kSteering, Hazard::kMove, "MoveJoystick with zeros in front is Accepted.",
+    from(kInMode, Hazard::kMove, "MoveJoystick with zeros in front is Accepted.",
          on<moved<kZeros>>),
 
     must("kinovazed.line.number-limits",
@@ -398,7 +398,7 @@ constexpr Clause kClauses[] = {
 
     should("kinovazed.line.number-strict", "A number with anything behind its digits is Rejected.",
            kSilent, Profiles::kDocumented, "kinovazed.line.number"),
-    from(kSteering, Hazard::kMove, "Three tails behind a zero are Rejected in steering.",
+    from(kInMode, Hazard::kMove, "Three tails behind a zero are Rejected in steering.",
          on<refused<kTailsForSteering>>),
 
     must("kinovazed.line.number-blanks", "Blanks in front of a number do not count.",
@@ -409,7 +409,7 @@ constexpr Clause kClauses[] = {
 
     should("kinovazed.line.number-no-blanks", "A number with a blank in front is Rejected.",
            kSilent, Profiles::kDocumented, "kinovazed.line.number-blanks"),
-    from(kSteering, Hazard::kMove, "Zeros with a blank in front are Rejected in steering.",
+    from(kInMode, Hazard::kMove, "Zeros with a blank in front are Rejected in steering.",
          on<refused<kBlanksForSteering>>),
 
     must("kinovazed.line.number-too-large", "A number beyond 32 bits makes no command.",
@@ -419,7 +419,7 @@ constexpr Clause kClauses[] = {
     should("kinovazed.line.number-too-large-rejected",
            "A command with a number beyond 32 bits is Rejected.", kSilent, Profiles::kDocumented,
            "kinovazed.line.number-too-large"),
-    from(kSteering, Hazard::kMove, "Three numbers beyond 32 bits are Rejected in steering.",
+    from(kInMode, Hazard::kMove, "Three numbers beyond 32 bits are Rejected in steering.",
          on<refused<kTooLarge>>),
 
     must("kinovazed.line.number-missing", "A number without digits makes no command.",
@@ -430,12 +430,12 @@ constexpr Clause kClauses[] = {
     should("kinovazed.line.number-missing-rejected",
            "A command with a number without digits is Rejected.", kSilent, Profiles::kDocumented,
            "kinovazed.line.number-missing"),
-    from(kSteering, Hazard::kMove, "Six moves without a number are Rejected in steering.",
+    from(kInMode, Hazard::kMove, "Six moves without a number are Rejected in steering.",
          on<refused<kNoDigits>>),
 };
 
 }  // namespace
 
-Chapter line_chapter() { return chapter("Lines", kClauses); }
+Chapter line_chapter() { return chapter("Lines", kLineClauses); }
 
 }  // namespace armjig::kinovazed::conformance

@@ -27,7 +27,7 @@ void leave_behind(ServerBench& server, std::size_t size) {
   server.connect();
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kLongLineClauses[] = {
     must("kinovazed.line.padded",
          "A line that is longer than one read of 128 bytes is served as a whole.",
          "server, recording framing-long-padded-1023", Profiles::kFirmware),
@@ -228,6 +228,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter long_line_chapter() { return chapter("Long lines and line feeds", kClauses); }
+Chapter long_line_chapter() { return chapter("Long lines and line feeds", kLongLineClauses); }
 
 }  // namespace armjig::kinovazed::conformance

@@ -50,9 +50,9 @@ constexpr auto kHijack = "SetActiveObjective:Antenna";
 constexpr Duration kDetour = 600ms;
 
 /// Shorter than any arm takes for the last 0.05 m.
-constexpr Duration kStopped = 80ms;
+constexpr Duration kStoppedFor = 80ms;
 
-constexpr Clause kClauses[] = {
+constexpr Clause kObjectiveClauses[] = {
     must("kinovazed.objective.current",
          "Current is done at once, for it moves to where the arm is.",
          "document; server, recording objectives-current"),
@@ -146,8 +146,8 @@ constexpr Clause kClauses[] = {
          server.pause(3s);
          const auto later = time_of(server, "SuckDoor");
          server.about("the difference that 3 s at Home make");
-         expect_time(server, later - at_once, -kStopped - server.noise(),
-                     kStopped + server.noise());
+         expect_time(server, later - at_once, -kStoppedFor - server.noise(),
+                     kStoppedFor + server.noise());
        }),
 
     must("kinovazed.objective.one-word", "Nothing is sent between the way-points of an objective.",
@@ -211,6 +211,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter objective_chapter() { return chapter("Objectives", kClauses); }
+Chapter objective_chapter() { return chapter("Objectives", kObjectiveClauses); }
 
 }  // namespace armjig::kinovazed::conformance

@@ -51,7 +51,7 @@ void console_harmless(ServerBench& server) {
   server.expect_beat(beat_of(state).flags);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kReplyClauses[] = {
     must("kinovazed.reply.words",
          "All that the server sends are its nine words and heartbeats, each with CR LF.",
          "document; server"),
@@ -211,7 +211,7 @@ constexpr Clause kClauses[] = {
     must("kinovazed.reply.recurring-mode", "The mode that is set already is confirmed at once.",
          "document, recurring commands; our reading", Profiles::kDocumented,
          "kinovazed.reply.not-recurring-mode"),
-    from(kSteering, Hazard::kMove, "XYZ is confirmed within 0.4 s when it is set.",
+    from(kInMode, Hazard::kMove, "XYZ is confirmed within 0.4 s when it is set.",
          [](ServerBench& server) {
            expect_time(server, same_mode(server), 0ms, 400ms + server.noise());
          }),
@@ -219,7 +219,7 @@ constexpr Clause kClauses[] = {
     must("kinovazed.reply.not-recurring-mode",
          "The mode that is set already goes through the whole change again.",
          "server, recording repeat-mode", Profiles::kFirmware, "kinovazed.reply.recurring-mode"),
-    from(kSteering, Hazard::kMove, "XYZ takes more than 0.5 s when it is set.",
+    from(kInMode, Hazard::kMove, "XYZ takes more than 0.5 s when it is set.",
          [](ServerBench& server) {
            expect_time(server, same_mode(server), 500ms, 1s + server.noise());
          }),
@@ -245,7 +245,7 @@ constexpr Clause kClauses[] = {
                               }
                             })),
     variant("steering",
-            from(kSteering, Hazard::kMove, "Three answers in steering come within half a second.",
+            from(kInMode, Hazard::kMove, "Three answers in steering come within half a second.",
                  [](ServerBench& server) {
                    expect_soon(server, "MoveJoystick:0:0:0", Event::kAccepted);
                    expect_soon(server, "Retract", Event::kRejected);
@@ -271,7 +271,7 @@ constexpr Clause kClauses[] = {
     must("kinovazed.console.harmless", "The three console commands change no state.",
          "server, recording service-commands-silent"),
     variant("stopped", look("Beat 3 follows.", on<console_harmless<State::kEmergencyStopped>>)),
-    variant("steering", from(kSteering, Hazard::kMove, "Beat 69 follows.",
+    variant("steering", from(kInMode, Hazard::kMove, "Beat 69 follows.",
                              on<console_harmless<State::kSteering>>)),
     variant("frozen",
             from(kReady, Hazard::kMove, "Beat 13 follows.", on<console_harmless<State::kFrozen>>)),
@@ -284,6 +284,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter reply_chapter() { return chapter("Replies and events", kClauses); }
+Chapter reply_chapter() { return chapter("Replies and events", kReplyClauses); }
 
 }  // namespace armjig::kinovazed::conformance

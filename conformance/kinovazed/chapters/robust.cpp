@@ -30,7 +30,7 @@ std::string junk_line(ServerBench& server) {
   return line + "\r\n";
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kRobustClauses[] = {
     must("kinovazed.robust.flood",
          "Two hundred commands in one go are answered one by one, none lost.",
          "server; reference 2.6"),
@@ -158,6 +158,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter robust_chapter() { return chapter("Robustness", kClauses); }
+Chapter robust_chapter() { return chapter("Robustness", kRobustClauses); }
 
 }  // namespace armjig::kinovazed::conformance

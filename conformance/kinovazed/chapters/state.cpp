@@ -112,7 +112,7 @@ void mode(ServerBench& server) {
   on_the_way(server, "SetJoystickMode:Rotation", 5, Event::kJoystickModeSet);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kStateClauses[] = {
     must("kinovazed.state.start", "A server that was just started is in emergencyStopped.",
          "server; reference 6.1"),
     from(kFresh, Hazard::kObserve, "The first beat of a fresh server says emergencyStopped.",
@@ -378,6 +378,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter state_chapter() { return chapter("States", kClauses); }
+Chapter state_chapter() { return chapter("States", kStateClauses); }
 
 }  // namespace armjig::kinovazed::conformance

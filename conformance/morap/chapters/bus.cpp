@@ -32,7 +32,7 @@ void expect_clock_time(NodeBench& node, Duration of_bits, Transaction transactio
                       fmt::format("{} us", microseconds(at(held))));
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kBusClauses[] = {
     must("morap.bus.poke-harmless", "A write of nothing changes nothing.", "firmware, vector 24"),
     from(kUncalibrated, Hazard::kState, "The chosen status is still read behind it.",
          [](NodeBench& node) {
@@ -203,6 +203,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter bus_chapter() { return chapter("Bus", kClauses); }
+Chapter bus_chapter() { return chapter("Bus", kBusClauses); }
 
 }  // namespace armjig::morap::conformance

@@ -37,7 +37,7 @@ constexpr Case one(std::string_view rule, CaseBody run, Start start, Hazard haza
   return from(start, hazard, rule, run);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kDocumentedClauses[] = {
     chosen("morap.documented.other-kind",
            "A message of another kind than 0 and 1 makes the programming status 3.",
            "reference, contradiction 12", "morap.program.other-kind"),
@@ -114,6 +114,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter documented_chapter() { return chapter("Where the document differs", kClauses); }
+Chapter documented_chapter() { return chapter("Where the document differs", kDocumentedClauses); }
 
 }  // namespace armjig::morap::conformance

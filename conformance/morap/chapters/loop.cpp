@@ -92,7 +92,7 @@ constexpr Case loop(std::string_view rule, CaseBody run) {
   return from(kFresh, Hazard::kProgram, rule, run);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kLoopClauses[] = {
     must("morap.loop.one-tick-late",
          "What a feedback loop computes at a tick is applied at the next.", "vector 63",
          Profiles::kFirmware),
@@ -380,6 +380,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter loop_chapter() { return chapter("Feedback loops", kClauses); }
+Chapter loop_chapter() { return chapter("Feedback loops", kLoopClauses); }
 
 }  // namespace armjig::morap::conformance

@@ -70,7 +70,7 @@ constexpr Case moving(std::string_view rule, CaseBody run) {
   return from(kFree, Hazard::kMove, rule, run);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kMotionClauses[] = {
     must("morap.motion.sense", "A positive voltage makes the angle larger.",
          "reference, encoder; recording loop-voltage"),
     moving("1.5 V.", on<sense<1>>),
@@ -176,6 +176,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter motion_chapter() { return chapter("A free shaft", kClauses); }
+Chapter motion_chapter() { return chapter("A free shaft", kMotionClauses); }
 
 }  // namespace armjig::morap::conformance

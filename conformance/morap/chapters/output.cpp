@@ -71,14 +71,14 @@ constexpr Case fresh(std::string_view rule, CaseBody run) {
   return from(kFresh, Hazard::kMove, rule, run);
 }
 
-constexpr Case moving(std::string_view rule, CaseBody run) {
+constexpr Case driven(std::string_view rule, CaseBody run) {
   return from(kDisabled, Hazard::kMove, rule, run);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kOutputClauses[] = {
     must("morap.voltage.close", "A drive voltage inside the limits is applied to within 0.05 V.",
          "document, applied voltage; firmware: a step is 0.046875 V"),
-    moving("Up to 1.5 V.",
+    driven("Up to 1.5 V.",
            [](NodeBench& node) {
              for (const float volts : {0.5F, 1.0F, 1.5F}) {
                node.send(kVoltage, volts);
@@ -90,7 +90,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.voltage.grid", "The applied voltage is the nearest multiple of 48/1024 V.",
          "reference, voltage quantisation; vector 56"),
-    moving("Up to 1.5 V, around a border too.",
+    driven("Up to 1.5 V, around a border too.",
            [](NodeBench& node) {
              struct Row {
                float volts;
@@ -108,7 +108,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.voltage.sign", "A negative drive voltage is applied as negative.",
          "document; recording static-direct-voltage"),
-    moving("-1.5 V.",
+    driven("-1.5 V.",
            [](NodeBench& node) {
              node.send(kVoltage, -1.5F);
              node.settle();
@@ -128,11 +128,11 @@ constexpr Clause kClauses[] = {
 
     must("morap.voltage.disabled", "Once disabled no voltage is applied.",
          "document; recording loop-disable-coast"),
-    moving("1.5 V, then 0.", on<voltage_ended<kDisable>>),
+    driven("1.5 V, then 0.", on<voltage_ended<kDisable>>),
 
     must("morap.voltage.forgotten", "Once the calibration is forgotten no voltage is applied.",
          "firmware, tick"),
-    moving("1.5 V, then 31.", on<voltage_ended<kCalibrationUnknown>>),
+    driven("1.5 V, then 31.", on<voltage_ended<kCalibrationUnknown>>),
 
     must("morap.voltage.at-tick", "A drive voltage is applied at the next tick and not before.",
          "vector 55"),
@@ -354,6 +354,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter output_chapter() { return chapter("Output and ticks", kClauses); }
+Chapter output_chapter() { return chapter("Output and ticks", kOutputClauses); }
 
 }  // namespace armjig::morap::conformance

@@ -11,7 +11,7 @@ constexpr Requirement pen(std::string_view id, Level level, std::string_view tex
   return {.id = id, .level = level, .text = text, .source = source, .unobservable = kUnseen};
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kPenClauses[] = {
     pen("morap.pen.address", Level::kMust, "The pen acknowledges address 19.",
         "reference, pen; recording bus-nodes-and-pen"),
 
@@ -42,6 +42,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter pen_chapter() { return chapter("Pen", kClauses); }
+Chapter pen_chapter() { return chapter("Pen", kPenClauses); }
 
 }  // namespace armjig::morap::conformance

@@ -70,7 +70,7 @@ void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
   node.expect_same(node.read(selector, 31), before);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kProgramClauses[] = {
     must("morap.program.status-at-boot", "After power-on the programming status is 1.",
          "document, programming status; vector 3"),
     programming(
@@ -433,6 +433,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter program_chapter() { return chapter("Programming", kClauses); }
+Chapter program_chapter() { return chapter("Programming", kProgramClauses); }
 
 }  // namespace armjig::morap::conformance

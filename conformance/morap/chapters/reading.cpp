@@ -11,7 +11,7 @@ void zero_at_boot(NodeBench& node) {
   node.expect_bytes(selector, "00 00 00 00");
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kReadingClauses[] = {
     must("morap.read.first-mode", "Before anything was chosen, a read answers with the angle.",
          "firmware, vector 1; the document is silent", Profiles::kFirmware),
     from(kFresh, Hazard::kState, "A turned shaft is read without a choice and with one.",
@@ -195,6 +195,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter reading_chapter() { return chapter("Reading", kClauses); }
+Chapter reading_chapter() { return chapter("Reading", kReadingClauses); }
 
 }  // namespace armjig::morap::conformance

@@ -19,15 +19,15 @@ void kept_over(NodeBench& node) {
 /// A real shaft turns by itself a little.
 constexpr double kCount = 1e-4;  // of any known motor, and a little more
 
-constexpr Case state(std::string_view rule, CaseBody run, Start start) {
+constexpr Case reference(std::string_view rule, CaseBody run, Start start) {
   return from(start, Hazard::kState, rule, run);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kReferenceClauses[] = {
     must("morap.reference.position",
          "The position reference is read back as it was written, bit for bit.",
          "document; recording static-reference-readback"),
-    state(
+    reference(
         "Values of all signs, and the smallest.",
         [](NodeBench& node) {
           for (const auto* const bits :
@@ -40,7 +40,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.reference.speed",
          "The speed reference is read back as it was written, bit for bit.", "vector 17"),
-    state(
+    reference(
         "Values of all signs, and the smallest.",
         [](NodeBench& node) {
           for (const auto* const bits :
@@ -54,7 +54,7 @@ constexpr Clause kClauses[] = {
     must("morap.reference.any-bits",
          "References of any bits are kept, those that are no numbers among them.", "vector 16",
          Profiles::kFirmware),
-    state(
+    reference(
         "Not a number, infinity, the largest; nothing runs.",
         [](NodeBench& node) {
           for (const auto* const bits :
@@ -73,7 +73,7 @@ constexpr Clause kClauses[] = {
     must("morap.reference.apart",
          "A speed reference leaves the position reference alone, and the other way round.",
          "vector 17"),
-    state(
+    reference(
         "Both are written in turn.",
         [](NodeBench& node) {
           node.send(kPosition, 0.25F);
@@ -86,7 +86,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.reference.voltage-apart", "A drive voltage leaves both references alone.",
          "firmware, commands"),
-    state(
+    reference(
         "Both, then a voltage.",
         [](NodeBench& node) {
           node.send(kPosition, 0.25F);
@@ -100,7 +100,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.reference.last", "Of several references the last one counts.",
          "firmware, commands"),
-    state(
+    reference(
         "Three are written.",
         [](NodeBench& node) {
           for (const float value : {0.25F, 0.5F, -0.75F}) node.send(kPosition, value);
@@ -109,19 +109,19 @@ constexpr Clause kClauses[] = {
         kUncalibrated),
 
     must("morap.reference.over-disable", "Disabling keeps the references.", "vector 18"),
-    state("Both, then 0.", on<kept_over<kDisable>>, kUncalibrated),
+    reference("Both, then 0.", on<kept_over<kDisable>>, kUncalibrated),
 
     must("morap.reference.over-forgetting", "Forgetting the calibration keeps them.",
          "firmware, commands"),
-    state("Both, then 31.", on<kept_over<kCalibrationUnknown>>, kUncalibrated),
+    reference("Both, then 31.", on<kept_over<kCalibrationUnknown>>, kUncalibrated),
 
     must("morap.reference.over-calibration", "Calibrating keeps them as well.",
          "firmware, commands"),
-    state("Both, then 16.", on<kept_over<kCalibrateZero>>, kUncalibrated),
+    reference("Both, then 16.", on<kept_over<kCalibrateZero>>, kUncalibrated),
 
     must("morap.write.short-float",
          "A reference with fewer than four bytes leaves the one before in place.", "vector 15"),
-    state(
+    reference(
         "Cut at every byte.",
         [](NodeBench& node) {
           node.send(kPosition, 1.0F);
@@ -134,7 +134,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.write.short-mode", "A reference with fewer than four bytes enables nothing.",
          "firmware: an older one changed the mode at the identifier"),
-    state(
+    reference(
         "Cut references of all kinds.",
         [](NodeBench& node) {
           for (const auto* const cut : {"01", "02 00", "03 00 00", "01 00 00 00"}) {
@@ -147,7 +147,7 @@ constexpr Clause kClauses[] = {
     must("morap.write.short-joined",
          "What a transaction leaves open the next one does not complete.",
          "recording static-partial-writes"),
-    state(
+    reference(
         "The second write would complete the first.",
         [](NodeBench& node) {
           node.send(kPosition, 1.0F);
@@ -160,7 +160,7 @@ constexpr Clause kClauses[] = {
     must("morap.write.payload-no-command",
          "Behind a command without payload nothing more is done in that write.",
          "firmware: one write, one command"),
-    state(
+    reference(
         "31 behind 0 and behind 16.",
         [](NodeBench& node) {
           node.send_bytes("00 1F");
@@ -172,7 +172,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.calibrate.zero", "Identifier 16 makes the present angle 0.",
          "document; recording static-calibrate-angle"),
-    state(
+    reference(
         "To 1 rad, then to 0.",
         [](NodeBench& node) {
           node.send(kCalibrateAngle, 1.0F);
@@ -184,7 +184,7 @@ constexpr Clause kClauses[] = {
     must("morap.calibrate.angle",
          "Identifier 17 makes the present angle the given one, but for a count.",
          "document; vector 8"),
-    state(
+    reference(
         "Angles of both signs.",
         [](NodeBench& node) {
           for (const float wanted : {1.0F, -0.52F, 1.5707964F}) {
@@ -196,7 +196,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.calibrate.truncates", "The given angle is cut to whole counts, towards zero.",
          "vectors 8 and 10", Profiles::kFirmware),
-    state(
+    reference(
         "1 rad, on a held shaft.",
         [](NodeBench& node) {
           node.send(kCalibrateAngle, 1.0F);
@@ -206,7 +206,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.calibrate.truncates-negative", "A negative angle is cut towards zero as well.",
          "vector 9", Profiles::kFirmware),
-    state(
+    reference(
         "-0.52 rad, on a held shaft.",
         [](NodeBench& node) {
           node.send_bytes("11 B8 1E 05 BF");  // -0.52
@@ -216,7 +216,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.calibrate.large", "An angle of many turns is kept in the same scale.",
          "recording static-calibrate-angle"),
-    state(
+    reference(
         "100 rad.",
         [](NodeBench& node) {
           node.send(kCalibrateAngle, 100.0F);
@@ -227,7 +227,7 @@ constexpr Clause kClauses[] = {
     must("morap.angle.scale",
          "A count is 2 pi through four times the pulses of the encoder and the gear ratio.",
          "vector 13; recording stim-encoder-angle"),
-    state(
+    reference(
         "One count and a thousand.",
         [](NodeBench& node) {
           node.turn(1);
@@ -239,7 +239,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.angle.many-turns", "The angle counts on beyond 16 bits of the encoder, both ways.",
          "firmware, encoder: counts have 32 bits"),
-    state(
+    reference(
         "Beyond 32,767 and 65,535 counts, and below -32,768.",
         [](NodeBench& node) {
           const MotorLaw motor{node.motor()};
@@ -255,7 +255,7 @@ constexpr Clause kClauses[] = {
         kFresh),
 
     must("morap.angle.sign", "Counts downwards make the angle smaller.", "vector 13"),
-    state(
+    reference(
         "One count down.",
         [](NodeBench& node) {
           node.turn(-1);
@@ -265,7 +265,7 @@ constexpr Clause kClauses[] = {
         kFresh),
 
     must("morap.angle.uncalibrated", "The angle is read also without calibration.", "vector 12"),
-    state(
+    reference(
         "A thousand counts before any calibration.",
         [](NodeBench& node) {
           node.expect_status(MotorStatus::kNeedsCalibration);
@@ -275,7 +275,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.angle.disabled", "Counting goes on while the node is disabled.",
          "firmware, encoder"),
-    state(
+    reference(
         "A thousand counts while disabled.",
         [](NodeBench& node) {
           node.send(kCalibrateZero);
@@ -286,7 +286,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.angle.over-disable", "Disabling keeps the angle as it is.",
          "firmware, identifier 0"),
-    state(
+    reference(
         "A thousand counts, then 0.",
         [](NodeBench& node) {
           node.send(kCalibrateZero);
@@ -298,7 +298,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.calibrate.zero-while-enabled", "An enabled node is calibrated to 0 as well.",
          "recording loop-calibrate-moving"),
-    state(
+    reference(
         "0 V on a held shaft, then 16.",
         [](NodeBench& node) {
           node.send(kCalibrateAngle, 1.0F);
@@ -310,7 +310,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.calibrate.angle-while-enabled",
          "An enabled node is calibrated to an angle as well.", "recording loop-calibrate-moving"),
-    state(
+    reference(
         "0 V on a held shaft, then 17.",
         [](NodeBench& node) {
           node.send(kCalibrateZero);
@@ -322,7 +322,7 @@ constexpr Clause kClauses[] = {
 
     must("morap.angle.over-forgetting", "Forgetting the calibration keeps the angle as it is.",
          "firmware, identifier 31"),
-    state(
+    reference(
         "A thousand counts, then 31.",
         [](NodeBench& node) {
           node.turn(1000);
@@ -334,6 +334,8 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter reference_chapter() { return chapter("References, calibration and angle", kClauses); }
+Chapter reference_chapter() {
+  return chapter("References, calibration and angle", kReferenceClauses);
+}
 
 }  // namespace armjig::morap::conformance

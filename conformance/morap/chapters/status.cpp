@@ -44,7 +44,7 @@ void stays_enabled(NodeBench& node, Send send) {
 }
 
 template <CommandId id>
-void does_nothing(NodeBench& node) {
+void does_nothing_when_enabled(NodeBench& node) {
   node.send(kVoltage, 0.0F);
   node.send(kReadMotorStatus);
   node.send(id);
@@ -58,7 +58,7 @@ constexpr Case state(std::string_view rule, CaseBody run, Start start) {
 
 constexpr Start kCalibrated = Start::kDisabled;
 
-constexpr Clause kClauses[] = {
+constexpr Clause kStatusClauses[] = {
     must("morap.status.at-boot", "After power-on the motor status is 3.",
          "document, motor status; vector 2"),
     state(
@@ -328,16 +328,16 @@ constexpr Clause kClauses[] = {
 
     must("morap.ids.trajectory", "Identifier 7 does nothing.",
          "firmware: a placeholder; recording static-unknown-ids"),
-    state("0 V, then 7.", on<does_nothing<kTrajectory>>, kCalibrated),
+    state("0 V, then 7.", on<does_nothing_when_enabled<kTrajectory>>, kCalibrated),
 
     must("morap.ids.led-on", "Identifier 252 does nothing.", "firmware"),
-    state("0 V, then 252.", on<does_nothing<kLedOn>>, kCalibrated),
+    state("0 V, then 252.", on<does_nothing_when_enabled<kLedOn>>, kCalibrated),
 
     must("morap.ids.led-off", "Identifier 253 does nothing.", "firmware"),
-    state("0 V, then 253.", on<does_nothing<kLedOff>>, kCalibrated),
+    state("0 V, then 253.", on<does_nothing_when_enabled<kLedOff>>, kCalibrated),
 
     must("morap.ids.led-toggle", "Identifier 254 does nothing.", "firmware"),
-    state("0 V, then 254.", on<does_nothing<kLedToggle>>, kCalibrated),
+    state("0 V, then 254.", on<does_nothing_when_enabled<kLedToggle>>, kCalibrated),
 
     must("morap.ids.all-bits", "All eight bits of an identifier count.",
          "arithmetic; recording static-unknown-ids"),
@@ -384,6 +384,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter status_chapter() { return chapter("Status and identifiers", kClauses); }
+Chapter status_chapter() { return chapter("Status and identifiers", kStatusClauses); }
 
 }  // namespace armjig::morap::conformance

@@ -35,7 +35,7 @@ float inertia_of(const Motor& motor, double pole) {
   return static_cast<float>(MotorLaw{motor}.inertia(pole));
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kTuneClauses[] = {
     must("morap.tune.success",
          "A tuning message with sound figures makes the programming status 2.",
          "document, tuning; vector 42"),
@@ -211,6 +211,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter tune_chapter() { return chapter("Tuning", kClauses); }
+Chapter tune_chapter() { return chapter("Tuning", kTuneClauses); }
 
 }  // namespace armjig::morap::conformance

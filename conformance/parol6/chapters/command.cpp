@@ -80,7 +80,7 @@ bool came_together(BoardBench& board, const std::vector<Answer>& answers) {
 
 constexpr Speeds kSomeSpeeds{111, -222, 333, -444, 555, -666};
 
-constexpr Clause kClauses[] = {
+constexpr Clause kCommandClauses[] = {
     must("parol6.command.enabled-at-start", "The board is enabled at power-up.", "firmware"),
     from(kFresh, Hazard::kMove, "A board that was switched on jogs.",
          [](BoardBench& board) { expect_jogs(board); }),
@@ -423,6 +423,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter command_chapter() { return chapter("Commands", kClauses); }
+Chapter command_chapter() { return chapter("Commands", kCommandClauses); }
 
 }  // namespace armjig::parol6::conformance

@@ -36,7 +36,7 @@ Answer run_back(BoardBench& board) {
   return answer.value_or(Answer{});
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kDemoClauses[] = {
     must("parol6.demo",
          "Code 69 drives all joints out to 6179, -22222, 49812, 0, 4059, 46075 and back to their "
          "standby positions.",
@@ -184,6 +184,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter demo_chapter() { return chapter("Demonstration", kClauses); }
+Chapter demo_chapter() { return chapter("Demonstration", kDemoClauses); }
 
 }  // namespace armjig::parol6::conformance

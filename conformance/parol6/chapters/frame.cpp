@@ -28,7 +28,7 @@ CommandBytes with_check(BoardBench& board, int check) {
   return encode(frame);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kFrameClauses[] = {
     must("parol6.frame.one-answer",
          "Every good frame is answered with exactly one telemetry frame.",
          "firmware: one answer for each accepted frame"),
@@ -292,6 +292,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter frame_chapter() { return chapter("Frames", kClauses); }
+Chapter frame_chapter() { return chapter("Frames", kFrameClauses); }
 
 }  // namespace armjig::parol6::conformance

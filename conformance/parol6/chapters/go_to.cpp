@@ -79,7 +79,7 @@ void expect_far(BoardBench& board, const Speeds& most) {
   }
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kGoToClauses[] = {
     must("parol6.goto.arrives",
          "A go-to without commanded speeds ends exactly at its target and stays there.",
          "document, following law; firmware"),
@@ -311,6 +311,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter go_to_chapter() { return chapter("Go-to law", kClauses); }
+Chapter go_to_chapter() { return chapter("Go-to law", kGoToClauses); }
 
 }  // namespace armjig::parol6::conformance

@@ -183,7 +183,7 @@ void expect_closed_by(BoardBench& board, const CommandFrame& frame, Duration tim
                     fmt::format("it went from {} to {}", before, after));
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kGripperClauses[] = {
     must("parol6.gripper.before-answer",
          "Before the gripper's first answer telemetry has gripper position 0, current 2 mA, status "
          "01.",
@@ -715,6 +715,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter gripper_chapter() { return chapter("Gripper", kClauses); }
+Chapter gripper_chapter() { return chapter("Gripper", kGripperClauses); }
 
 }  // namespace armjig::parol6::conformance

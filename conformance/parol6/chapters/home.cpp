@@ -93,7 +93,7 @@ void expect_second_run(BoardBench& board) {
   }
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kHomeClauses[] = {
     must("parol6.home.idle-speeds-ignored", "Speeds in idle frames do not disturb homing.",
          "firmware: 255 leaves them alone"),
     from(kEnabled, Hazard::kHome, "J2 seeks at its speed whatever idle frames say.",
@@ -376,6 +376,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter home_chapter() { return chapter("Homing, interrupted and repeated", kClauses); }
+Chapter home_chapter() { return chapter("Homing, interrupted and repeated", kHomeClauses); }
 
 }  // namespace armjig::parol6::conformance

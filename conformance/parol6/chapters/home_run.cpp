@@ -104,7 +104,7 @@ void expect_speeds(BoardBench& board, std::uint8_t homed, std::size_t joint) {
   expect_speed(board, {seeking.front(), seeking.back()}, joint, seek);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kHomeRunClauses[] = {
     must("parol6.home.once", "One home command, followed by idle frames, homes the whole arm.",
          "document, home; firmware: 255 goes on with homing"),
     from(kHomed, Hazard::kObserve, "One home command was enough.",
@@ -470,6 +470,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter home_run_chapter() { return chapter("Homing, a whole run", kClauses); }
+Chapter home_run_chapter() { return chapter("Homing, a whole run", kHomeRunClauses); }
 
 }  // namespace armjig::parol6::conformance

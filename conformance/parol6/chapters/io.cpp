@@ -51,7 +51,7 @@ void expect_no_jog(BoardBench& board, std::string_view what) {
   expect_still(board, jog(4, 500), 100ms);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kIoClauses[] = {
     must("parol6.telemetry.outputs", "The answer shows both outputs as its own frame set them.",
          "firmware: outputs are written before the answer is made"),
     from(kListening, Hazard::kState, "Outputs are shown by the frame that sets them.",
@@ -307,6 +307,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter io_chapter() { return chapter("Inputs, outputs and emergency stop", kClauses); }
+Chapter io_chapter() { return chapter("Inputs, outputs and emergency stop", kIoClauses); }
 
 }  // namespace armjig::parol6::conformance

@@ -38,7 +38,7 @@ void expect_clamped(BoardBench& board, std::size_t joint, int speed, int most) {
   expect_speed(board, stretch, joint, most);
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kJogClauses[] = {
     must("parol6.jog.own-joint",
          "In a jog the speed field of a joint drives that joint and no other.",
          "document, packet table; firmware"),
@@ -280,6 +280,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter jog_chapter() { return chapter("Jog and stepping", kClauses); }
+Chapter jog_chapter() { return chapter("Jog and stepping", kJogClauses); }
 
 }  // namespace armjig::parol6::conformance

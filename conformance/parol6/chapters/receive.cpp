@@ -39,7 +39,7 @@ void send_cut(BoardBench& board, std::size_t size) {
   board.about(fmt::format("the first frame behind one cut after {} bytes", size));
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kReceiveClauses[] = {
     must("parol6.receive.any-length",
          "Any byte after three start bytes is believed to be the length, FF included, and a frame "
          "of "
@@ -234,6 +234,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter receive_chapter() { return chapter("Receiving", kClauses); }
+Chapter receive_chapter() { return chapter("Receiving", kReceiveClauses); }
 
 }  // namespace armjig::parol6::conformance

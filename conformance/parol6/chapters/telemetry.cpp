@@ -52,7 +52,7 @@ Answer reported(BoardBench& board, const Speeds& speeds) {
   return answer;
 }
 
-constexpr Clause kClauses[] = {
+constexpr Clause kTelemetryClauses[] = {
     must("parol6.telemetry.layout",
          "Telemetry is 60 bytes that begin with FF FF FF 38 and end with 01 02.",
          "document, packet table; firmware"),
@@ -401,6 +401,6 @@ constexpr Clause kClauses[] = {
 
 }  // namespace
 
-Chapter telemetry_chapter() { return chapter("Telemetry", kClauses); }
+Chapter telemetry_chapter() { return chapter("Telemetry", kTelemetryClauses); }
 
 }  // namespace armjig::parol6::conformance

@@ -260,7 +260,7 @@ constexpr Change kRateSaid = [](Words& answer, QuirkMemory&, const Node& node) {
   });
 };
 
-constexpr auto kQuirks = std::to_array<Quirk>({
+constexpr auto kProgrammingQuirks = std::to_array<Quirk>({
     {.name = "d-order",
      .section = "Feedback",
      .hear = kHearSet<turn_round<&ControllerSet::d>>,
@@ -367,6 +367,6 @@ constexpr auto kQuirks = std::to_array<Quirk>({
 
 }  // namespace
 
-std::span<const Quirk> programming_quirks() noexcept { return kQuirks; }
+std::span<const Quirk> programming_quirks() noexcept { return kProgrammingQuirks; }
 
 }  // namespace armjig::morap::emulation

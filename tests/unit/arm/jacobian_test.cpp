@@ -8,15 +8,12 @@
 
 #include "harness/arm/models.hpp"
 #include "harness/arm/spherical_wrist.hpp"
+#include "tests/unit/arm/degrees.hpp"
 
 namespace armjig::arm {
 namespace {
 
-constexpr double rad(double degrees) { return degrees * (std::numbers::pi / 180); }
-SixJoints radians(SixJoints degrees) {
-  for (auto& q : degrees) q = rad(q);
-  return degrees;
-}
+using test::radians;
 
 TEST(Jacobian, IsTheDerivativeOfForwardKinematics) {
   constexpr double kSmall = 1e-6;

@@ -10,19 +10,17 @@
 #include "harness/arm/models.hpp"
 #include "harness/arm/orientation.hpp"
 #include "harness/arm/spherical_wrist.hpp"
+#include "tests/unit/arm/degrees.hpp"
 
 // Postures, poses and angles are those of the references of both devices, degrees and mm or m
 // there.
 namespace armjig::arm {
 namespace {
 
-constexpr double rad(double degrees) { return degrees * (std::numbers::pi / 180); }
-constexpr double deg(double radians) { return radians * (180 / std::numbers::pi); }
+using test::rad;
+using test::radians;
 
-SixJoints radians(SixJoints degrees) {
-  for (auto& q : degrees) q = rad(q);
-  return degrees;
-}
+constexpr double deg(double radians) { return radians * (180 / std::numbers::pi); }
 
 /// A posture of PAROL6, the tool's place and the commander's angles there, the flange's place.
 struct Parol6Posture {

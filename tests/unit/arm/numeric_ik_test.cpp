@@ -10,12 +10,13 @@
 #include <random>
 
 #include "harness/arm/models.hpp"
+#include "tests/unit/arm/degrees.hpp"
 #include "tests/unit/support/allocations.hpp"
 
 namespace armjig::arm {
 namespace {
 
-constexpr double rad(double degrees) { return degrees * (std::numbers::pi / 180); }
+using test::rad;
 
 double draw_between(std::mt19937_64& engine, double lower, double upper) {
   return lower + (upper - lower) * (static_cast<double>(engine() >> 11U) * 0x1p-53);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "harness/arm/models.hpp"
+#include "tests/unit/arm/degrees.hpp"
 #include "tests/unit/arm/kdl_arm.hpp"
 
 namespace armjig::arm {
@@ -17,15 +18,11 @@ namespace {
 using test::difference;
 using test::kdl_pose;
 using test::ours;
+using test::rad;
+using test::radians;
 
 constexpr double kAgree = 1e-9;
 constexpr double kTurn = 2 * std::numbers::pi;
-
-constexpr double rad(double degrees) { return degrees * (std::numbers::pi / 180); }
-SixJoints radians(SixJoints degrees) {
-  for (auto& q : degrees) q = rad(q);
-  return degrees;
-}
 
 /// Postures within an arm's limits; endless joints get one turn.
 class Postures {

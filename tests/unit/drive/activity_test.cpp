@@ -22,9 +22,9 @@ using Ending = Activity::Ending;
 using ::testing::HasSubstr;
 
 /// A drive and an emulated arm on virtual time, telemetry already there.
-class Jig {
+class ActivityJig {
  public:
-  Jig() { run(20ms); }
+  ActivityJig() { run(20ms); }
 
   void run(Duration duration) {
     const auto end = port.now() + duration;
@@ -76,21 +76,21 @@ constexpr JointSpeeds kGentle{StepsPerSecond{1500}, StepsPerSecond{3000}, StepsP
                               StepsPerSecond{5500}, StepsPerSecond{5500}, StepsPerSecond{5500}};
 
 TEST(Activity, CommandsEndWithTheirEcho) {
-  Jig jig;
+  ActivityJig jig;
   expect(jig.ending(begin_command(jig.drive, Command::kDisable)), true, "disabled");
   expect(jig.ending(begin_command(jig.drive, Command::kEnable)), true, "enabled");
   expect(jig.ending(begin_command(jig.drive, Command::kClearError)), true, "cleared");
 }
 
 TEST(Activity, HomingEndsHomedAndNamesTheJointsOnItsWay) {
-  Jig jig;
+  ActivityJig jig;
   expect(jig.ending(begin_home(jig.drive)), true, "homed in 3");
   EXPECT_THAT(jig.news, HasSubstr("j1 j2 j3"));
   EXPECT_TRUE(jig.stands());
 }
 
 TEST(Activity, HomingThatIsStuckIsGivenUpAndTheBoardDisabled) {
-  Jig jig;
+  ActivityJig jig;
   jig.touch([](Plant& plant) {
     plant.axes[3].is_jammed = true;  // its switch never closes, so the joint is sought for ever
     plant.axes[3].switch_state = Axis::SwitchState::kStuckOpen;
@@ -100,14 +100,14 @@ TEST(Activity, HomingThatIsStuckIsGivenUpAndTheBoardDisabled) {
 }
 
 TEST(Activity, HomingOfADisabledBoardFails) {
-  Jig jig;
+  ActivityJig jig;
   jig.drive.disable();
   jig.run(100ms);
   expect(jig.ending(begin_home(jig.drive)), false, "homing does not go on");
 }
 
 TEST(Activity, AJogGoesOnAfterItsSuccessAndStopEndsIt) {
-  Jig jig;
+  ActivityJig jig;
   auto jog = begin_jog(jig.drive, 1, StepsPerSecond{-700});
   ASSERT_TRUE(jog);
   expect(jig.ending(**jog), true, "j2 moves");
@@ -118,13 +118,13 @@ TEST(Activity, AJogGoesOnAfterItsSuccessAndStopEndsIt) {
 }
 
 TEST(Activity, ATimedJogMakesItsSteps) {
-  Jig jig;
+  ActivityJig jig;
   expect(jig.ending(begin_jog_for(jig.drive, 0, StepsPerSecond{500}, 1500ms)), true, "+750 steps");
   EXPECT_TRUE(jig.stands());
 }
 
 TEST(Activity, AJogOfADisabledBoardFailsAndIsNotTriedOn) {
-  Jig jig;
+  ActivityJig jig;
   jig.drive.disable();
   jig.run(100ms);
   expect(jig.ending(begin_jog(jig.drive, 0, StepsPerSecond{100})), false, "j1 does not move");
@@ -134,7 +134,7 @@ TEST(Activity, AJogOfADisabledBoardFailsAndIsNotTriedOn) {
 }
 
 TEST(Activity, GoToArrivesWithAllJoints) {
-  Jig jig;
+  ActivityJig jig;
   auto goal = jig.drive.telemetry()->position;
   goal[0] = goal[0] + Steps{-1234};
   goal[5] = goal[5] + Steps{777};
@@ -144,7 +144,7 @@ TEST(Activity, GoToArrivesWithAllJoints) {
 }
 
 TEST(Activity, GoToOfADisabledBoardFails) {
-  Jig jig;
+  ActivityJig jig;
   jig.drive.disable();
   jig.run(100ms);
   JointSteps goal{};
@@ -153,7 +153,7 @@ TEST(Activity, GoToOfADisabledBoardFails) {
 }
 
 TEST(Activity, StopEndsAHomingByDisabling) {
-  Jig jig;
+  ActivityJig jig;
   auto home = begin_home(jig.drive);
   ASSERT_TRUE(home);
   EXPECT_FALSE(jig.ending(**home, 3s));
@@ -162,7 +162,7 @@ TEST(Activity, StopEndsAHomingByDisabling) {
 }
 
 TEST(Activity, StopEndsAHomingThatSomebodyElseBegan) {
-  Jig jig;
+  ActivityJig jig;
   ASSERT_TRUE(jig.drive.home());
   jig.run(1s);
   Drive other;  // knows nothing of it, and idle frames let it go on
@@ -178,7 +178,7 @@ TEST(Activity, StopEndsAHomingThatSomebodyElseBegan) {
 
 TEST(Activity, TheEmergencyStopEndsWhateverGoesOn) {
   for (const bool homes : {false, true}) {
-    Jig jig;
+    ActivityJig jig;
     auto begun =
         homes ? begin_home(jig.drive) : begin_jog_for(jig.drive, 0, StepsPerSecond{500}, 1min);
     ASSERT_TRUE(begun);
@@ -205,7 +205,7 @@ TEST(Activity, SilenceOfTheBoardEndsWhatGoesOn) {
 }
 
 TEST(Activity, OutputsAreSeenInTelemetry) {
-  Jig jig;
+  ActivityJig jig;
   expect(jig.ending(begin_outputs(jig.drive, io_flag::kOut2)), true, "out1 is off, out2 is on");
   expect(jig.ending(begin_outputs(jig.drive, 0)), true, "out1 is off, out2 is off");
 }
@@ -214,7 +214,7 @@ constexpr GripperSetPoint kHalfClosed{
     .position = 100, .speed = 60, .current = Milliamperes{500}, .command = 0xD0};
 
 TEST(Activity, TheGripperMovesOnceItIsCalibrated) {
-  Jig jig;
+  ActivityJig jig;
   expect(jig.ending(begin_gripper_move(jig.drive, kHalfClosed)), false, "not calibrated");
   expect(jig.ending(begin_gripper_calibration(jig.drive)), true, "calibrated");
   expect(jig.ending(begin_gripper_move(jig.drive, kHalfClosed)), true, "the gripper is at");
@@ -222,7 +222,7 @@ TEST(Activity, TheGripperMovesOnceItIsCalibrated) {
 }
 
 TEST(Activity, TheGripperSaysThatItMetSomething) {
-  Jig jig;
+  ActivityJig jig;
   expect(jig.ending(begin_gripper_calibration(jig.drive)), true, "calibrated");
   auto open = kHalfClosed;
   open.position = 0;
@@ -245,7 +245,7 @@ TEST(Activity, WithoutAGripperCalibrationFails) {
 }
 
 TEST(Activity, WaitingTakesItsTime) {
-  Jig jig;
+  ActivityJig jig;
   const auto start = jig.port.now();
   expect(jig.ending(begin_wait(1500ms)), true, "1.5 s");
   EXPECT_EQ(jig.port.now() - start, 1500ms);

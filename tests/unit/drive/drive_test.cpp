@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 using Kind = DriveEvent::Kind;
 
 /// A drive and an emulated arm on virtual time.
-class Jig {
+class DriveJig {
  public:
   void run(Duration duration) {
     const auto end = port.now() + duration;
@@ -56,7 +56,7 @@ JointSteps away_from(JointSteps positions) {
 }
 
 TEST(Drive, AMinuteAtOneHundredHertzLosesNothing) {
-  Jig jig;
+  DriveJig jig;
   jig.run(60s);
   ASSERT_TRUE(jig.loop.receive_until(jig.port.now() + 10ms));
   const auto& statistics = jig.drive.statistics();
@@ -68,7 +68,7 @@ TEST(Drive, AMinuteAtOneHundredHertzLosesNothing) {
 }
 
 TEST(Drive, JogTakesEffectAndIdleEndsIt) {
-  Jig jig;
+  DriveJig jig;
   ASSERT_TRUE(jig.drive.jog(all_joints(1000)));
   jig.run(1s);
   EXPECT_TRUE(jig.saw(Kind::kTookEffect));
@@ -82,7 +82,7 @@ TEST(Drive, JogTakesEffectAndIdleEndsIt) {
 }
 
 TEST(Drive, GoToArrives) {
-  Jig jig;
+  DriveJig jig;
   jig.run(20ms);
   const auto goal = away_from(jig.positions());
   ASSERT_TRUE(jig.drive.go_to(goal, {}));
@@ -93,7 +93,7 @@ TEST(Drive, GoToArrives) {
 }
 
 TEST(Drive, HomesFromOneRequest) {
-  Jig jig;
+  DriveJig jig;
   ASSERT_TRUE(jig.drive.home());
   jig.run(40s);
   EXPECT_TRUE(jig.saw(Kind::kHomed));
@@ -103,7 +103,7 @@ TEST(Drive, HomesFromOneRequest) {
 }
 
 TEST(Drive, ADisabledBoardThatAcceptsAJogButStandsIsReported) {
-  Jig jig;
+  DriveJig jig;
   jig.drive.disable();
   jig.run(100ms);
   ASSERT_TRUE(jig.drive.jog(all_joints(500)));
@@ -112,7 +112,7 @@ TEST(Drive, ADisabledBoardThatAcceptsAJogButStandsIsReported) {
 }
 
 TEST(Drive, ADisabledBoardThatAcceptsHomeButStandsIsReported) {
-  Jig jig;
+  DriveJig jig;
   jig.drive.disable();
   jig.run(100ms);
   ASSERT_TRUE(jig.drive.home());
@@ -183,7 +183,7 @@ TEST(Drive, FramesWithoutAnAnswerAreLostAndOnesWithALateAnswerAreLate) {
 }
 
 TEST(Drive, NoRequestMovesAnythingWhileTheStopIsLatched) {
-  Jig jig;
+  DriveJig jig;
   jig.run(50ms);
   jig.press_estop(Level::kLow);
   jig.run(50ms);
@@ -199,17 +199,17 @@ TEST(Drive, NoRequestMovesAnythingWhileTheStopIsLatched) {
 }
 
 /// What an arm may be doing when the stop is pressed.
-enum class Activity { kJog, kGoTo, kHome };
+enum class Doing { kJog, kGoTo, kHome };
 
-void begin(Activity activity, Jig& jig) {
+void begin(Doing activity, DriveJig& jig) {
   switch (activity) {
-    case Activity::kJog:
+    case Doing::kJog:
       ASSERT_TRUE(jig.drive.jog(all_joints(-1500)));
       break;
-    case Activity::kGoTo:
+    case Doing::kGoTo:
       ASSERT_TRUE(jig.drive.go_to(away_from(jig.positions()), all_joints(300)));
       break;
-    case Activity::kHome:
+    case Doing::kHome:
       ASSERT_TRUE(jig.drive.home());
       break;
   }
@@ -220,11 +220,11 @@ TEST(Drive, EmergencyStopAtTwoHundredRandomMomentsLatchesAndNothingMovesAfterEna
   constexpr Duration kToShow = 40ms;  // a frame to tell us, a frame to tell the board, one to see
   for (int moment = 0; moment < 200; ++moment) {
     SCOPED_TRACE(moment);
-    Jig jig;
+    DriveJig jig;
     jig.run(20ms);
-    const auto activity = static_cast<Activity>(moment % 3);
+    const auto activity = static_cast<Doing>(moment % 3);
     begin(activity, jig);
-    const auto longest = activity == Activity::kHome ? 30'000 : 1'500;
+    const auto longest = activity == Doing::kHome ? 30'000 : 1'500;
     jig.run(std::chrono::microseconds{dice.between(0, longest * 1000)});
     jig.press_estop(Level::kLow);
     jig.run(kToShow);

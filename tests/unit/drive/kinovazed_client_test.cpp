@@ -16,12 +16,12 @@ using namespace std::chrono_literals;
 using Kind = DriveEvent::Kind;
 
 /// A client and an emulated server on virtual time.
-struct Jig {
-  explicit Jig(ServerOptions server = {}, DriveOptions drive = {})
+struct ClientJig {
+  explicit ClientJig(ServerOptions server = {}, DriveOptions drive = {})
       : port{Server{ArmPort{BenchArm{}}, std::move(server)}}, client{port, drive} {}
 
   /// Connected, initialised, idle.
-  Jig& start() {
+  ClientJig& start() {
     EXPECT_TRUE(client.connect(client.now() + 2s));
     EXPECT_TRUE(ended(client.quit_estop()));
     EXPECT_TRUE(ended(client.initialize()));
@@ -48,62 +48,62 @@ struct Jig {
 };
 
 TEST(KinovaClient, ComesBackFromACallWhenTheEventHasCome) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   EXPECT_EQ(jig.state(), State::kIdle);
-  EXPECT_TRUE(Jig::ended(jig.client.retract()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.retract()));
   EXPECT_EQ(jig.state(), State::kRetracted);
-  EXPECT_TRUE(Jig::ended(jig.client.unfold()));
-  EXPECT_TRUE(Jig::ended(jig.client.freeze()));
-  EXPECT_TRUE(Jig::ended(jig.client.unfreeze()));
-  EXPECT_TRUE(Jig::ended(jig.client.set_joystick_mode(Mode::kXyz)));
+  EXPECT_TRUE(ClientJig::ended(jig.client.unfold()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.freeze()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.unfreeze()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.set_joystick_mode(Mode::kXyz)));
   EXPECT_EQ(jig.state(), State::kSteering);
-  EXPECT_TRUE(Jig::ended(jig.client.move_joystick({})));
-  EXPECT_TRUE(Jig::ended(jig.client.run_objective(Objective::kHome)));
+  EXPECT_TRUE(ClientJig::ended(jig.client.move_joystick({})));
+  EXPECT_TRUE(ClientJig::ended(jig.client.run_objective(Objective::kHome)));
   EXPECT_EQ(jig.state(), State::kIdle);
-  EXPECT_TRUE(Jig::ended(jig.client.estop()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.estop()));
   EXPECT_EQ(jig.state(), State::kEmergencyStopped);
 }
 
 TEST(KinovaClient, DoesTheSameWithADocumentedServer) {
   ServerOptions options;
   options.behaviour = kDocumentedBehaviour;
-  Jig jig{options, {.profile = Profile::kDocumented}};
+  ClientJig jig{options, {.profile = Profile::kDocumented}};
   jig.start();
-  EXPECT_TRUE(Jig::ended(jig.client.freeze()));
-  EXPECT_TRUE(Jig::ended(jig.client.unfreeze()));
-  EXPECT_TRUE(Jig::ended(jig.client.unfold(), Ending::kRejected));
-  EXPECT_TRUE(Jig::ended(jig.client.run_objective(Objective::kHome)));
+  EXPECT_TRUE(ClientJig::ended(jig.client.freeze()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.unfreeze()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.unfold(), Ending::kRejected));
+  EXPECT_TRUE(ClientJig::ended(jig.client.run_objective(Objective::kHome)));
   EXPECT_TRUE(jig.client.take_events().empty()) << "nothing is left over";
 }
 
 TEST(KinovaClient, GetsAlongWithADocumentedServerThatItTakesForAShippedOne) {
   ServerOptions options;
   options.behaviour = kDocumentedBehaviour;
-  Jig jig{options};
+  ClientJig jig{options};
   jig.start();
-  EXPECT_TRUE(Jig::ended(jig.client.freeze()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.freeze()));
 }
 
 TEST(KinovaClient, TakesReplyAndEventInBothOrders) {
   for (const auto race : {RaceOrder::kReplyFirst, RaceOrder::kEventFirst}) {
-    Jig jig{{.race = race}};
+    ClientJig jig{{.race = race}};
     jig.start();
-    EXPECT_TRUE(Jig::ended(jig.client.set_joystick_mode(Mode::kNoMode)));
-    EXPECT_TRUE(Jig::ended(jig.client.initialize())) << "the arm is there already";
-    EXPECT_TRUE(Jig::ended(jig.client.freeze())) << "and no reply was left over";
+    EXPECT_TRUE(ClientJig::ended(jig.client.set_joystick_mode(Mode::kNoMode)));
+    EXPECT_TRUE(ClientJig::ended(jig.client.initialize())) << "the arm is there already";
+    EXPECT_TRUE(ClientJig::ended(jig.client.freeze())) << "and no reply was left over";
     EXPECT_TRUE(jig.client.take_events().empty());
   }
 }
 
 TEST(KinovaClient, SaysThatACommandWasRejected) {
-  Jig jig;
+  ClientJig jig;
   ASSERT_TRUE(jig.client.connect(jig.client.now() + 2s));
-  EXPECT_TRUE(Jig::ended(jig.client.initialize(), Ending::kRejected));
+  EXPECT_TRUE(ClientJig::ended(jig.client.initialize(), Ending::kRejected));
 }
 
 TEST(KinovaClient, CancelsAnObjectiveWithoutAnEmergencyStop) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   const auto end = jig.client.now() + 300ms;
   const auto result = jig.client.run_objective(
@@ -115,7 +115,7 @@ TEST(KinovaClient, CancelsAnObjectiveWithoutAnEmergencyStop) {
 }
 
 TEST(KinovaClient, CancelsAnyOtherMotionByAnEmergencyStop) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   const auto result = jig.client.retract({.is_cancelled = [] { return true; }});
   ASSERT_TRUE(result);
@@ -126,7 +126,7 @@ TEST(KinovaClient, CancelsAnyOtherMotionByAnEmergencyStop) {
 }
 
 TEST(KinovaClient, GivesUpWhenTheEventTakesTooLong) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   const auto result = jig.client.run_objective(Objective::kHome, {.time = 100ms});
   ASSERT_TRUE(result);
@@ -134,13 +134,13 @@ TEST(KinovaClient, GivesUpWhenTheEventTakesTooLong) {
 }
 
 TEST(KinovaClient, AnswersForACommandThatAnotherOneEnded) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   const auto objective =
       jig.client.begin({.verb = Verb::kRunObjective, .objective = Objective::kHome});
   ASSERT_TRUE(objective);
   jig.pass(200ms);
-  EXPECT_TRUE(Jig::ended(jig.client.estop()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.estop()));
   for (const auto& event : jig.client.take_events()) jig.events.push_back(event);
   const auto ended = std::ranges::find(jig.events, *objective, &DriveEvent::request);
   ASSERT_NE(ended, jig.events.end());
@@ -148,25 +148,25 @@ TEST(KinovaClient, AnswersForACommandThatAnotherOneEnded) {
 }
 
 TEST(KinovaClient, WaitsBetweenModesSoThatTheServerDoesNotHang) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   ASSERT_TRUE(jig.client.begin({.verb = Verb::kSetJoystickMode, .mode = Mode::kXyz}));
   jig.pass(60ms);
-  EXPECT_TRUE(Jig::ended(jig.client.estop()));
-  EXPECT_TRUE(Jig::ended(jig.client.quit_estop()));
-  EXPECT_TRUE(Jig::ended(jig.client.initialize()));
-  EXPECT_TRUE(Jig::ended(jig.client.set_joystick_mode(Mode::kRotation)));
+  EXPECT_TRUE(ClientJig::ended(jig.client.estop()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.quit_estop()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.initialize()));
+  EXPECT_TRUE(ClientJig::ended(jig.client.set_joystick_mode(Mode::kRotation)));
   jig.pass(2s);
   EXPECT_EQ(jig.server().life(), Server::Life::kRunning);
 }
 
 TEST(KinovaClient, LetsTheStickGoWhenNobodyRenewsIt) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   ASSERT_TRUE(jig.client.set_joystick_mode(Mode::kXyz));
   const Command deflected{.verb = Verb::kMoveJoystick, .deflection = {100, 0, 0}};
   for (int i = 0; i < 5; ++i) {
-    EXPECT_TRUE(Jig::ended(jig.client.call(deflected)));
+    EXPECT_TRUE(ClientJig::ended(jig.client.call(deflected)));
     jig.pass(300ms);
     EXPECT_TRUE(jig.client.drive().is_stick_deflected());
   }
@@ -195,7 +195,7 @@ TEST(KinovaClient, LetsTheStickGoBeforeItLeaves) {
 }
 
 TEST(KinovaClient, TellsOfAnArmThatFailed) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   jig.pass(1500ms);
   jig.server().touch(jig.client.now(),
@@ -206,7 +206,7 @@ TEST(KinovaClient, TellsOfAnArmThatFailed) {
 }
 
 TEST(KinovaClient, ConnectsAnewToAServerThatFellSilent) {
-  Jig jig;
+  ClientJig jig;
   jig.start();
   jig.pass(1500ms);
   jig.server().touch(jig.client.now(), [](ArmPort& arm) { arm.unplug(); });
@@ -217,9 +217,9 @@ TEST(KinovaClient, ConnectsAnewToAServerThatFellSilent) {
 }
 
 TEST(KinovaClient, SaysThatADeadServerRefusesConnections) {
-  Jig jig{{.objectives = *parse_objectives("[]", "none")}};
+  ClientJig jig{{.objectives = *parse_objectives("[]", "none")}};
   jig.start();
-  EXPECT_TRUE(Jig::ended(jig.client.run_objective(Objective::kHome), Ending::kLost));
+  EXPECT_TRUE(ClientJig::ended(jig.client.run_objective(Objective::kHome), Ending::kLost));
   EXPECT_EQ(jig.client.poll(jig.client.now() + 1s).error().code, ErrorCode::kRefused);
 }
 

@@ -22,9 +22,9 @@ using ::testing::HasSubstr;
 using Ending = Activity::Ending;
 
 /// A drive and an emulated arm on virtual time.
-class Jig {
+class ToolJogJig {
  public:
-  Jig() {
+  ToolJogJig() {
     while (!drive.telemetry()) (void)loop.cycle();
   }
 
@@ -59,7 +59,7 @@ class Jig {
 constexpr CartesianJog kUp{JogFrame::kWorld, {.linear = {0, 0, 0.02}}};
 
 TEST(ToolJog, MovesTheToolAlongAnAxisOfTheBaseForItsTime) {
-  Jig jig;
+  ToolJogJig jig;
   jig.home();
   const auto before = jig.tool();
   const auto ending = jig.ending(*begin_tool_jog(jig.drive, kUp, 1s));
@@ -73,7 +73,7 @@ TEST(ToolJog, MovesTheToolAlongAnAxisOfTheBaseForItsTime) {
 }
 
 TEST(ToolJog, TurnsTheToolAboutItsOwnAxisAndLeavesItsOriginWhereItIs) {
-  Jig jig;
+  ToolJogJig jig;
   jig.home();
   jig.bend_wrist();
   const auto before = jig.tool();
@@ -88,7 +88,7 @@ TEST(ToolJog, TurnsTheToolAboutItsOwnAxisAndLeavesItsOriginWhereItIs) {
 }
 
 TEST(ToolJog, WithoutATimeGoesAsFarAsItCanAndStandsThere) {
-  Jig jig;
+  ToolJogJig jig;
   jig.home();
   const auto ending = jig.ending(*begin_tool_jog(jig.drive, kUp, std::nullopt));
   ASSERT_TRUE(ending);
@@ -100,7 +100,7 @@ TEST(ToolJog, WithoutATimeGoesAsFarAsItCanAndStandsThere) {
 }
 
 TEST(ToolJog, NeedsAnArmThatWasHomed) {
-  Jig jig;
+  ToolJogJig jig;
   const auto before = jig.drive.telemetry()->position;
   const auto ending = jig.ending(*begin_tool_jog(jig.drive, kUp, 1s));
   ASSERT_TRUE(ending);

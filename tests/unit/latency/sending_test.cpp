@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr SendingPlan kPlan{.count = 20, .period = 10ms, .patience = 1s};
 
-bool never() { return false; }
+bool goes_on() { return false; }
 
 /// A port whose kernel says that each message left after that time.
 class StampedPath final : public Path {
@@ -44,7 +44,7 @@ struct Asked {
 };
 
 Asked ask(std::optional<Duration> stamp, std::optional<Duration> delay,
-          const std::function<bool()>& must_end = never) {
+          const std::function<bool()>& must_end = goes_on) {
   Asked asked;
   MemoryStream<test::DelayedEcho>* clock = nullptr;
   MemoryStream<test::DelayedEcho> port{test::DelayedEcho{[&](std::uint64_t) {

@@ -30,7 +30,7 @@ using Access = BusPort::Access;
 constexpr BusAddress kDemo{demo::emulation::BusDevice::kAddress};
 
 /// A device that notes what is written and reads as 1, 2, 3, ...
-struct Recorder {
+struct BusRecorder {
   std::vector<int> written;
   int reads = 0;
 
@@ -46,7 +46,7 @@ struct Recorder {
 
 std::unique_ptr<EmulatedBusPort<i2c::Bus>> make_bus() {
   i2c::Bus bus;
-  bus.attach(Recorder{});
+  bus.attach(BusRecorder{});
   return std::make_unique<EmulatedBusPort<i2c::Bus>>(std::move(bus));
 }
 
@@ -54,12 +54,12 @@ struct Bus {
   explicit Bus(std::string_view text) {
     const auto impairment = parse_impairment(text);
     auto inner = make_bus();
-    device = &inner->bus().device<Recorder>(0);
+    device = &inner->bus().device<BusRecorder>(0);
     auto made = ImpairedBus::make(std::move(inner), impairment.value());
     if (!made) ADD_FAILURE() << describe(made.error());
     port = std::move(made.value());
   }
-  Recorder* device{};
+  BusRecorder* device{};
   std::unique_ptr<ImpairedBus> port;
 };
 

@@ -114,7 +114,7 @@ std::vector<Chunk> any_chunks() {
   return chunks;
 }
 
-MATCHER_P2(is, due, bytes, "") {
+MATCHER_P2(is_delivery, due, bytes, "") {
   return arg.due == at(due) && std::ranges::equal(arg.bytes, hex(bytes));
 }
 
@@ -122,8 +122,8 @@ TEST(ImpairedPath, WithoutDefectsDeliversAtOnceAndUnchanged) {
   auto path = path_of("seed=1");
   path.push(at(3ms), hex("01 02 03"));
   path.push(at(3ms), hex("04"));
-  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is(3ms, "01 02 03")));
-  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is(3ms, "04")));
+  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is_delivery(3ms, "01 02 03")));
+  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is_delivery(3ms, "04")));
   EXPECT_EQ(path.pop(at(1h)), std::nullopt);
   EXPECT_EQ(path.next_due(at(3ms)), std::nullopt);
 }
@@ -133,13 +133,14 @@ TEST(ImpairedPath, DoesNotDeliverBeforeTime) {
   path.push(at(1ms), hex("01"));
   EXPECT_EQ(path.next_due(at(1ms)), at(3ms));
   EXPECT_EQ(path.pop(at(2999us)), std::nullopt);
-  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is(3ms, "01")));
+  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is_delivery(3ms, "01")));
 }
 
 TEST(ImpairedPath, SplitsIntoPiecesOfAFixedSizeAndARest) {
   auto path = path_of("split=2");
-  EXPECT_THAT(carried(path, {{at(0s), hex("01 02 03 04 05")}}),
-              ElementsAre(is(0s, "01 02"), is(0s, "03 04"), is(0s, "05")));
+  EXPECT_THAT(
+      carried(path, {{at(0s), hex("01 02 03 04 05")}}),
+      ElementsAre(is_delivery(0s, "01 02"), is_delivery(0s, "03 04"), is_delivery(0s, "05")));
   EXPECT_EQ(path.statistics().splits, 2U);
 }
 
@@ -157,25 +158,26 @@ TEST(ImpairedPath, SplitsAtRandomPlaces) {
 TEST(ImpairedPath, JoinsUntilThereIsEnough) {
   auto path = path_of("merge=4");
   EXPECT_THAT(carried(path, {{at(0ms), hex("01 02")}, {at(5ms), hex("03")}, {at(9ms), hex("04")}}),
-              ElementsAre(is(9ms, "01 02 03 04")));
+              ElementsAre(is_delivery(9ms, "01 02 03 04")));
   EXPECT_EQ(path.statistics().merges, 2U);
 }
 
 TEST(ImpairedPath, JoinsNoLongerThanTheWait) {
   auto path = path_of("merge=100:3ms");
-  EXPECT_THAT(carried(path, {{at(0ms), hex("01")},
-                             {at(2ms), hex("02")},
-                             {at(3ms), hex("03")},
-                             {at(20ms), hex("04")}}),
-              ElementsAre(is(3ms, "01 02"), is(6ms, "03"), is(23ms, "04")));
+  EXPECT_THAT(
+      carried(path, {{at(0ms), hex("01")},
+                     {at(2ms), hex("02")},
+                     {at(3ms), hex("03")},
+                     {at(20ms), hex("04")}}),
+      ElementsAre(is_delivery(3ms, "01 02"), is_delivery(6ms, "03"), is_delivery(23ms, "04")));
 }
 
 TEST(ImpairedPath, StopsJoiningAtTheEndOfTheWaitThoughNobodyLooks) {
   auto path = path_of("merge=100:3ms");
   path.push(at(0ms), hex("01"));
   path.push(at(3ms), hex("02"));
-  EXPECT_THAT(path.pop(at(1h)), ::testing::Optional(is(3ms, "01")));
-  EXPECT_THAT(path.pop(at(1h)), ::testing::Optional(is(6ms, "02")));
+  EXPECT_THAT(path.pop(at(1h)), ::testing::Optional(is_delivery(3ms, "01")));
+  EXPECT_THAT(path.pop(at(1h)), ::testing::Optional(is_delivery(6ms, "02")));
 }
 
 TEST(ImpairedPath, JoinsAtRandom) {
@@ -215,8 +217,8 @@ TEST(ImpairedPath, DeliversAHeldChunkRightBehindTheOneThatOvertookIt) {
     const bool is_held = path.next_due(at(1ms)) == at(21ms);
     path.push(at(5ms), hex("02"));
     if (!is_held || path.next_due(at(5ms)) != at(5ms)) continue;
-    EXPECT_THAT(path.pop(at(5ms)), ::testing::Optional(is(5ms, "02")));
-    EXPECT_THAT(path.pop(at(5ms)), ::testing::Optional(is(5ms, "01")));
+    EXPECT_THAT(path.pop(at(5ms)), ::testing::Optional(is_delivery(5ms, "02")));
+    EXPECT_THAT(path.pop(at(5ms)), ::testing::Optional(is_delivery(5ms, "01")));
     EXPECT_EQ(path.statistics().chunks_reordered, 1U);
     return;
   }
@@ -224,14 +226,14 @@ TEST(ImpairedPath, DeliversAHeldChunkRightBehindTheOneThatOvertookIt) {
 
 TEST(ImpairedPath, DeliversAHeldChunkThatNothingOvertakes) {
   auto path = path_of("reorder=100%:7ms");
-  EXPECT_THAT(carried(path, {{at(1ms), hex("01 02")}}), ElementsAre(is(8ms, "01 02")));
+  EXPECT_THAT(carried(path, {{at(1ms), hex("01 02")}}), ElementsAre(is_delivery(8ms, "01 02")));
   EXPECT_EQ(path.statistics().chunks_reordered, 0U);
 }
 
 TEST(ImpairedPath, KeepsTheOrderOfChunksThatAreAllHeld) {
   auto path = path_of("reorder=100%:7ms");
   EXPECT_THAT(carried(path, {{at(1ms), hex("01")}, {at(2ms), hex("02")}}),
-              ElementsAre(is(8ms, "01"), is(9ms, "02")));
+              ElementsAre(is_delivery(8ms, "01"), is_delivery(9ms, "02")));
 }
 
 TEST(ImpairedPath, KeepsTheOrderOfChunksThatAreAllHeldAndDelayed) {
@@ -264,7 +266,8 @@ TEST(ImpairedPath, CarriesNoMoreThanItsBandwidth) {
   auto path = path_of("bandwidth=1000");
   EXPECT_THAT(
       carried(path, {{at(0ms), hex("01 02 03")}, {at(1ms), hex("04")}, {at(1s), hex("05 06")}}),
-      ElementsAre(is(3ms, "01 02 03"), is(4ms, "04"), is(1002ms, "05 06")));
+      ElementsAre(is_delivery(3ms, "01 02 03"), is_delivery(4ms, "04"),
+                  is_delivery(1002ms, "05 06")));
 }
 
 TEST(ImpairedPath, SpendsBandwidthOnWhatItLosesAndDoubles) {
@@ -279,8 +282,9 @@ TEST(ImpairedPath, SpendsBandwidthOnWhatItLosesAndDoubles) {
 
 TEST(ImpairedPath, StandsStillForEachStall) {
   auto path = path_of("stall=100%:10ms");
-  EXPECT_THAT(carried(path, {{at(0ms), hex("01")}, {at(1ms), hex("02")}, {at(100ms), hex("03")}}),
-              ElementsAre(is(10ms, "01"), is(20ms, "02"), is(110ms, "03")));
+  EXPECT_THAT(
+      carried(path, {{at(0ms), hex("01")}, {at(1ms), hex("02")}, {at(100ms), hex("03")}}),
+      ElementsAre(is_delivery(10ms, "01"), is_delivery(20ms, "02"), is_delivery(110ms, "03")));
   EXPECT_EQ(path.statistics().stalls, 3U);
 }
 
@@ -294,14 +298,16 @@ TEST(ImpairedPath, LosesEverythingAtOneHundredPercent) {
 TEST(ImpairedPath, DeliversDoubledChunksTwice) {
   auto path = path_of("double=100%");
   EXPECT_THAT(carried(path, {{at(0ms), hex("01 02")}, {at(1ms), hex("03")}}),
-              ElementsAre(is(0ms, "01 02"), is(0ms, "01 02"), is(1ms, "03"), is(1ms, "03")));
+              ElementsAre(is_delivery(0ms, "01 02"), is_delivery(0ms, "01 02"),
+                          is_delivery(1ms, "03"), is_delivery(1ms, "03")));
   EXPECT_EQ(path.statistics().chunks_doubled, 2U);
   EXPECT_EQ(path.statistics().bytes_doubled, 3U);
 }
 
 TEST(ImpairedPath, FlipsEveryBitAtOneHundredPercent) {
   auto path = path_of("bit-errors=100%");
-  EXPECT_THAT(carried(path, {{at(0ms), hex("00 F0 55")}}), ElementsAre(is(0ms, "FF 0F AA")));
+  EXPECT_THAT(carried(path, {{at(0ms), hex("00 F0 55")}}),
+              ElementsAre(is_delivery(0ms, "FF 0F AA")));
   EXPECT_EQ(path.statistics().bits_flipped, 24U);
 }
 
@@ -330,9 +336,9 @@ TEST(ImpairedPath, BreaksBehindSoManyBytes) {
   EXPECT_EQ(path.end(at(1h)), End::kOpen);
   path.push(at(2ms), hex("04 05 06"));
   path.push(at(2ms), hex("07"));
-  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is(1ms, "01 02 03")));
+  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is_delivery(1ms, "01 02 03")));
   EXPECT_EQ(path.end(at(3ms)), End::kOpen) << "something is still on its way";
-  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is(3ms, "04 05")));
+  EXPECT_THAT(path.pop(at(3ms)), ::testing::Optional(is_delivery(3ms, "04 05")));
   EXPECT_EQ(path.end(at(3ms)), End::kBroken);
   EXPECT_EQ(path.statistics().disconnects, 1U);
   EXPECT_EQ(path.statistics().bytes_cut_off, 2U);
@@ -350,7 +356,7 @@ TEST(ImpairedPath, TellsWhenItsEndIsDueAndOnlyUntilThen) {
   auto path = path_of("delay=4ms");
   path.push(at(1ms), hex("01"));
   path.close(at(2ms));
-  EXPECT_THAT(path.pop(at(5ms)), ::testing::Optional(is(5ms, "01")));
+  EXPECT_THAT(path.pop(at(5ms)), ::testing::Optional(is_delivery(5ms, "01")));
   EXPECT_EQ(path.next_due(at(4ms)), at(5ms));
   EXPECT_EQ(path.next_due(at(5ms)), std::nullopt);
   EXPECT_EQ(path.end(at(4ms)), End::kOpen);
@@ -362,7 +368,7 @@ TEST(ImpairedPath, ClosesBehindWhatIsHeldAndJoined) {
   path.push(at(0ms), hex("01"));
   path.push(at(1ms), hex("02"));
   path.close(at(2ms));
-  EXPECT_THAT(path.pop(at(11ms)), ::testing::Optional(is(11ms, "01 02")));
+  EXPECT_THAT(path.pop(at(11ms)), ::testing::Optional(is_delivery(11ms, "01 02")));
   EXPECT_EQ(path.end(at(11ms)), End::kClosed);
 }
 
@@ -371,7 +377,7 @@ TEST(ImpairedPath, BeginsAnewWhenReopened) {
   path.push(at(0ms), hex("01 02 03"));
   path.reopen();
   path.push(at(1ms), hex("04"));
-  EXPECT_THAT(path.pop(at(1001ms)), ::testing::Optional(is(1001ms, "04")));
+  EXPECT_THAT(path.pop(at(1001ms)), ::testing::Optional(is_delivery(1001ms, "04")));
   EXPECT_EQ(path.end(at(1h)), End::kOpen);
   EXPECT_EQ(path.statistics().bytes_cut_off, 3U);
 }

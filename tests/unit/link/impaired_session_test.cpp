@@ -28,7 +28,7 @@ using Arrival = SessionPort::Arrival;
 
 /// A server that notes everything as text with the time in milliseconds, echoes each segment at
 /// once, and ends or resets when told to.
-struct Recorder {
+struct SessionRecorder {
   std::vector<std::string> notes;
   std::vector<SessionEvent> events;
 
@@ -58,7 +58,7 @@ class ImpairedSessionTest : public ::testing::Test {
   void open(std::string_view text) {
     const auto impairment = parse_impairment(text);
     ASSERT_TRUE(impairment) << describe(impairment.error());
-    auto inner = std::make_unique<MemorySession<Recorder>>(Recorder{});
+    auto inner = std::make_unique<MemorySession<SessionRecorder>>(SessionRecorder{});
     server = &inner->device();
     port = std::make_unique<ImpairedSession>(std::move(inner), *impairment);
     ASSERT_TRUE(port->connect(at(1s)));
@@ -86,7 +86,7 @@ class ImpairedSessionTest : public ::testing::Test {
   }
   [[nodiscard]] const std::vector<std::string>& notes() const { return server->notes; }
 
-  Recorder* server{};
+  SessionRecorder* server{};
   std::unique_ptr<ImpairedSession> port;
 };
 

@@ -30,7 +30,7 @@ using test::hex;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-Impairment parsed(std::string_view text) {
+Impairment stream_impairment(std::string_view text) {
   const auto impairment = parse_impairment(text);
   if (!impairment) ADD_FAILURE() << describe(impairment.error());
   return impairment ? *impairment : Impairment{};
@@ -47,7 +47,7 @@ MATCHER_P2(is, time, bytes, "") {
 }
 
 /// A device that notes what it receives and sends what it was told to.
-struct Recorder {
+struct StreamRecorder {
   std::vector<Stamped> received;
   std::deque<SentBytes> to_send;
   std::vector<SentBytes> ready;
@@ -69,15 +69,15 @@ struct Recorder {
 /// A bad link to a recorder.
 struct Link {
   explicit Link(const Impairment& impairment, std::deque<SentBytes> to_send = {}) {
-    auto inner = std::make_unique<MemoryStream<Recorder>>(Recorder{});
+    auto inner = std::make_unique<MemoryStream<StreamRecorder>>(StreamRecorder{});
     device = &inner->device();
     device->to_send = std::move(to_send);
     port = std::make_unique<ImpairedStream>(std::move(inner), impairment);
   }
   explicit Link(std::string_view text, std::deque<SentBytes> to_send = {})
-      : Link{parsed(text), std::move(to_send)} {}
+      : Link{stream_impairment(text), std::move(to_send)} {}
 
-  Recorder* device{};
+  StreamRecorder* device{};
   std::unique_ptr<ImpairedStream> port;
 };
 
@@ -150,7 +150,7 @@ class ScriptedStream final : public StreamPort {
 TEST(ImpairedStream, WithoutDefectsIsThePortItself) {
   ImpairedStream port{std::make_unique<MemoryStream<demo::emulation::StreamDevice>>(
                           demo::emulation::StreamDevice{}),
-                      parsed("seed=1")};
+                      stream_impairment("seed=1")};
   write(port, "A5 73 8C");  // demo: start
   const auto reply = read(port, at(10ms));
   ASSERT_TRUE(reply);
@@ -161,7 +161,7 @@ TEST(ImpairedStream, WithoutDefectsIsThePortItself) {
 TEST(ImpairedStream, DelaysBothWaysOnVirtualTime) {
   ImpairedStream port{std::make_unique<MemoryStream<demo::emulation::StreamDevice>>(
                           demo::emulation::StreamDevice{}),
-                      parsed("out.delay=2ms,in.delay=3ms")};
+                      stream_impairment("out.delay=2ms,in.delay=3ms")};
   write(port, "A5 73 8C");
   const auto reply = read(port, at(10ms));
   ASSERT_TRUE(reply);
@@ -194,7 +194,7 @@ TEST(ImpairedStream, SendsDelayedWritesWhileAReadWaits) {
 TEST(ImpairedStream, SendsWhatIsDueBeforeTheNextWrite) {
   auto inner = std::make_unique<ScriptedStream>(std::deque<Stamped>{{at(1s), hex("AA")}}, Error{});
   auto* const scripted = inner.get();
-  ImpairedStream port{std::move(inner), parsed("out.chunk=1,out.bandwidth=1000")};
+  ImpairedStream port{std::move(inner), stream_impairment("out.chunk=1,out.bandwidth=1000")};
   write(port, "01 02");
   std::array<std::byte, 1> nothing{};
   std::ignore = scripted->read(nothing, at(1500us));  // time passes elsewhere
@@ -203,7 +203,7 @@ TEST(ImpairedStream, SendsWhatIsDueBeforeTheNextWrite) {
 }
 
 TEST(ImpairedStream, SendsWhatIsOnItsWayWhenItIsDestroyed) {
-  auto inner = std::make_unique<MemoryStream<Recorder>>(Recorder{});
+  auto inner = std::make_unique<MemoryStream<StreamRecorder>>(StreamRecorder{});
   struct Witness final : StreamPort {
     Witness(std::unique_ptr<StreamPort> port, ByteVector& bytes)
         : inner{std::move(port)}, written{bytes} {}
@@ -220,7 +220,8 @@ TEST(ImpairedStream, SendsWhatIsOnItsWayWhenItIsDestroyed) {
   };
   ByteVector written;
   {
-    ImpairedStream port{std::make_unique<Witness>(std::move(inner), written), parsed("delay=1s")};
+    ImpairedStream port{std::make_unique<Witness>(std::move(inner), written),
+                        stream_impairment("delay=1s")};
     write(port, "01 02");
     EXPECT_THAT(written, IsEmpty());
   }
@@ -259,7 +260,7 @@ TEST(ImpairedStream, EndsAReadAtItsDeadlineThoughADelayedFloodComesIn) {
   std::deque<Stamped> flood;
   for (int i = 0; i < 1000; ++i) flood.push_back({at(i * 1ms), hex("01")});
   auto inner = std::make_unique<ScriptedStream>(flood, Error{});
-  ImpairedStream port{std::move(inner), parsed("in.delay=10s")};
+  ImpairedStream port{std::move(inner), stream_impairment("in.delay=10s")};
   const auto nothing = read(port, at(50ms));
   ASSERT_TRUE(nothing);
   EXPECT_THAT(*nothing, is(50ms, ""));
@@ -268,7 +269,7 @@ TEST(ImpairedStream, EndsAReadAtItsDeadlineThoughADelayedFloodComesIn) {
 TEST(ImpairedStream, CountsEveryFrameThatItLoses) {
   ImpairedStream port{std::make_unique<MemoryStream<demo::emulation::StreamDevice>>(
                           demo::emulation::StreamDevice{}),
-                      parsed("loss=10%,seed=5")};
+                      stream_impairment("loss=10%,seed=5")};
   int answered = 0;
   for (int i = 0; i < 1000; ++i) {
     write(port, "A5 71 8E");  // demo: query
@@ -334,7 +335,7 @@ TEST(ImpairedStream, LosesWithTheLinkWhatIsOnItsWayTheOtherWay) {
 TEST(ImpairedStream, GivesWhatWasOnItsWayBeforeItTellsThatTheDeviceHasGone) {
   auto inner = std::make_unique<ScriptedStream>(std::deque<Stamped>{{at(1ms), hex("01 02")}},
                                                 Error{ErrorCode::kDisconnected, 5});
-  ImpairedStream port{std::move(inner), parsed("in.delay=1s")};
+  ImpairedStream port{std::move(inner), stream_impairment("in.delay=1s")};
   const auto last = read(port, at(10s));
   ASSERT_TRUE(last);
   EXPECT_THAT(*last, is(1ms, "01 02"));
@@ -347,7 +348,7 @@ TEST(ImpairedStream, GivesWhatWasOnItsWayBeforeItTellsThatTheDeviceHasGone) {
 TEST(ImpairedStream, TellsOfADelayedWriteThatFailsInTheReadThatSendsIt) {
   auto inner = std::make_unique<ScriptedStream>(std::deque<Stamped>{{at(1s), hex("01")}}, Error{});
   auto* const scripted = inner.get();
-  ImpairedStream port{std::move(inner), parsed("out.delay=1ms")};
+  ImpairedStream port{std::move(inner), stream_impairment("out.delay=1ms")};
   write(port, "01");
   scripted->write_error = Error{ErrorCode::kTimedOut};
   const auto late = read(port, at(10ms));
@@ -362,21 +363,21 @@ TEST(ImpairedStream, TellsOfADelayedWriteThatFailsInTheReadThatSendsIt) {
 TEST(ImpairedStream, PassesOtherErrorsOfTheInnerPortOnAndLives) {
   auto inner =
       std::make_unique<ScriptedStream>(std::deque<Stamped>{}, Error{ErrorCode::kSystem, 4});
-  ImpairedStream port{std::move(inner), parsed("in.delay=1s")};
+  ImpairedStream port{std::move(inner), stream_impairment("in.delay=1s")};
   EXPECT_EQ(read(port, at(1s)).error(), (Error{ErrorCode::kSystem, 4}));
   EXPECT_TRUE(port.write(hex("01")));
 }
 
 TEST(ImpairedStream, HasTheDescriptorOfTheInnerPort) {
   const ImpairedStream port{std::make_unique<ScriptedStream>(std::deque<Stamped>{}, Error{}),
-                            parsed("seed=1")};
+                            stream_impairment("seed=1")};
   EXPECT_EQ(port.lifeline()->descriptor, 7);
 }
 
 TEST(ImpairedStream, DoesNotSpin) {
   auto inner = std::make_unique<ScriptedStream>(std::deque<Stamped>{{at(1h), hex("01")}}, Error{});
   auto* const scripted = inner.get();
-  ImpairedStream port{std::move(inner), parsed("delay=1ms")};
+  ImpairedStream port{std::move(inner), stream_impairment("delay=1ms")};
   write(port, "01");
   std::ignore = read(port, at(1s));
   EXPECT_EQ(scripted->reads, 2);  // until the write is due, then until the deadline

@@ -15,7 +15,7 @@
 namespace armjig::parol6::planning {
 namespace {
 
-constexpr PlannerSettings kCommander{.rules = Rules::kCommander};
+constexpr PlannerSettings kCommanderLine{.rules = Rules::kCommander};
 
 arm::SixJoints commander_seed() {
   arm::SixJoints seed{};
@@ -68,7 +68,7 @@ TEST(CommanderIk, LeavesAGoodSeedUnwrapped) {
 
 TEST(CommanderPoseMove, RefusesANegativeJointSix) {
   const Move move{.kind = Move::Kind::kPose, .target = {0, 263.23, 161.241, -90, 0, -89.499}};
-  const auto result = plan(move, kStandby, kCommander);
+  const auto result = plan(move, kStandby, kCommanderLine);
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().reason, Refusal::Reason::kOutOfLimits);
   EXPECT_EQ(result.error().joint, 5U);
@@ -78,7 +78,7 @@ TEST(CommanderPoseMove, EndsWithinAStepOfItsPosture) {
   const Move move{.kind = Move::Kind::kPose,
                   .target = {81.565, 262.804, 161.047, -90.135, -0.029, -89.578},
                   .timing = {.duration = 4}};
-  const auto result = plan(move, kStandby, kCommander);
+  const auto result = plan(move, kStandby, kCommanderLine);
   ASSERT_TRUE(result.has_value());
   const arm::SixJoints expected{67.7989, -80.3335, 148.9335, 31.8237, 45.8443, 156.5831};
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -94,7 +94,7 @@ struct Expected {
 
 TEST(CommanderLine, IsTheReferencesLineFromStandby) {
   const Move move{.kind = Move::Kind::kLine, .target = {0, 263.23, 161.241, -90, 0, -89.499}};
-  const auto result = plan(move, kStandby, kCommander);
+  const auto result = plan(move, kStandby, kCommanderLine);
   ASSERT_TRUE(result.has_value());
   EXPECT_FALSE(result->stop);
   ASSERT_EQ(result->set_points.size(), 359U);
@@ -135,7 +135,7 @@ TEST(CommanderLine, PutsASecondTrapezoidOnTopOfItsProfile) {
 TEST(CommanderLine, LooksAtPercentsOnlyIfBothAreThereAndNoTimeIs) {
   const auto result = [](Timing timing) {
     const Move move{.kind = Move::Kind::kToolLine, .timing = timing};
-    return plan(move, kStandby, kCommander);
+    return plan(move, kStandby, kCommanderLine);
   };
   EXPECT_EQ(result({.speed = 101, .acceleration = 50}).error().reason,
             Refusal::Reason::kPercentOutOfRange);
@@ -150,7 +150,7 @@ TEST(CommanderLine, LooksAtPercentsOnlyIfBothAreThereAndNoTimeIs) {
 // K6: along the tool's x axis, which points up there.
 TEST(CommanderLine, GoesAlongTheAxesOfTheTool) {
   const Move move{.kind = Move::Kind::kToolLine, .target = {-80, 0, 0, 0, 0, 0}};
-  const auto result = plan(move, kStandby, kCommander);
+  const auto result = plan(move, kStandby, kCommanderLine);
   ASSERT_TRUE(result.has_value());
   ASSERT_FALSE(result->stop);
   const auto end = forward(arm::parol6_commander(), radians_of(result->set_points.back().position));
@@ -162,7 +162,7 @@ TEST(CommanderLine, GoesAlongTheAxesOfTheTool) {
 TEST(CommanderLine, CountsItsSamplesOnTheGridOfItsDuration) {
   const auto count = [](double seconds) {
     const Move move{.kind = Move::Kind::kToolLine, .timing = {.duration = seconds}};
-    return plan(move, kStandby, kCommander)->set_points.size() + 1;
+    return plan(move, kStandby, kCommanderLine)->set_points.size() + 1;
   };
   EXPECT_EQ(count(0.29), 28U);
   EXPECT_EQ(count(0.57), 56U);
@@ -171,7 +171,7 @@ TEST(CommanderLine, CountsItsSamplesOnTheGridOfItsDuration) {
 
 TEST(CommanderLine, SendsTheSetPointThatDidNotConvergeAndStops) {
   const Move move{.kind = Move::Kind::kLine, .target = {900, 0, 200, 0, 90, 180}};
-  const auto result = plan(move, kStandby, kCommander);
+  const auto result = plan(move, kStandby, kCommanderLine);
   ASSERT_TRUE(result.has_value());
   ASSERT_TRUE(result->stop);
   EXPECT_EQ(result->stop->reason, Refusal::Reason::kNotConverged);
@@ -183,7 +183,7 @@ TEST(CommanderLine, StopsWhereAJointChangesItsSign) {
   const JointSteps start{Steps{200}, Steps{-32000}, Steps{51471},
                          Steps{0},   Steps{1422},   Steps{32000}};
   const Move move{.kind = Move::Kind::kToolLine, .target = {0, 40, 0, 0, 0, 0}};
-  const auto result = plan(move, start, kCommander);
+  const auto result = plan(move, start, kCommanderLine);
   ASSERT_TRUE(result.has_value());
   ASSERT_TRUE(result->stop);
   EXPECT_EQ(result->stop->reason, Refusal::Reason::kSignFlip);
@@ -195,7 +195,7 @@ tl::expected<Plan, Refusal> turned(double degrees) {
   const Move move{.kind = Move::Kind::kToolLine,
                   .target = {0, 0, 0, 0, 0, degrees},
                   .timing = {.duration = 4.0}};
-  return plan(move, kStandby, kCommander);
+  return plan(move, kStandby, kCommanderLine);
 }
 
 TEST(CommanderLine, TellsOfTheLongWayRoundAndRefusesAWholeTurn) {
@@ -212,7 +212,7 @@ TEST(CommanderJointMove, RefusesNumbersThatNoFrameHolds) {
   const Move move{.kind = Move::Kind::kJoint,
                   .target = {1000, -90, 180, 0, 0, 180},
                   .timing = {.duration = 0.03}};
-  auto settings = kCommander;
+  auto settings = kCommanderLine;
   settings.limits = LimitCheck::kIgnored;
   const auto planned = plan(move, kStandby, settings);
   ASSERT_FALSE(planned);

@@ -42,7 +42,7 @@ TEST(Tracking, LagsOneTickBehindARightSpeed) {
   EXPECT_NEAR(target - place, 0, 1);  // at the tick's end; within it the lag is a tick
 }
 
-JointSteps bent() {
+JointSteps bent_pose() {
   JointSteps steps;
   const arm::SixJoints degrees{20, -80, 170, 10, 40, 180};
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -78,21 +78,21 @@ Journey jogged(const CartesianJog& jog, JointSteps start) {
 
 TEST(CartesianJog, MovesTheToolAlongTheWorldsAxes) {
   for (const arm::Vector3 way : {arm::Vector3{0.02, 0, 0}, {0, 0.02, 0}, {0, 0, -0.02}}) {
-    const auto [before, after] = jogged({JogFrame::kWorld, {.linear = way}}, bent());
+    const auto [before, after] = jogged({JogFrame::kWorld, {.linear = way}}, bent_pose());
     EXPECT_LT(norm(after.position - before.position - way), 1e-3);
     EXPECT_LT(angle_between(before.rotation, after.rotation), 0.01);
   }
 }
 
 TEST(CartesianJog, MovesTheToolAlongItsOwnAxes) {
-  const auto [before, after] = jogged({JogFrame::kTool, {.linear = {0, 0, 0.02}}}, bent());
+  const auto [before, after] = jogged({JogFrame::kTool, {.linear = {0, 0, 0.02}}}, bent_pose());
   const auto way = 0.02 * before.rotation.z_axis();
   EXPECT_LT(norm(after.position - before.position - way), 1e-3);
 }
 
 TEST(CartesianJog, TurnsTheToolWhereItIs) {
   for (const auto frame : {JogFrame::kWorld, JogFrame::kTool}) {
-    const auto [before, after] = jogged({frame, {.angular = {0, 0, 0.1}}}, bent());
+    const auto [before, after] = jogged({frame, {.angular = {0, 0, 0.1}}}, bent_pose());
     EXPECT_LT(norm(after.position - before.position), 1e-3);
     const auto turn = frame == JogFrame::kWorld ? after.rotation * inverse(before.rotation)
                                                 : inverse(before.rotation) * after.rotation;
@@ -101,7 +101,7 @@ TEST(CartesianJog, TurnsTheToolWhereItIs) {
 }
 
 TEST(CartesianJog, IsRefusedAtALimit) {
-  auto start = bent();
+  auto start = bent_pose();
   start[0] = Steps{14000};
   const CartesianJogger jogger;
   const auto arm = arm::parol6_commander();
@@ -122,14 +122,14 @@ TEST(CartesianJog, IsRefusedWhereTheToolCannotMoveThatWay) {
 
 TEST(CartesianJog, IsRefusedTooFast) {
   const auto refusal =
-      CartesianJogger{}.speeds({JogFrame::kWorld, {.linear = {0, 0, 0.5}}}, bent());
+      CartesianJogger{}.speeds({JogFrame::kWorld, {.linear = {0, 0, 0.5}}}, bent_pose());
   ASSERT_FALSE(refusal.has_value());
   EXPECT_EQ(refusal.error().reason, Refusal::Reason::kTooFast);
 }
 
 TEST(CartesianJog, TakesNothingFromTheHeap) {
   const CartesianJogger jogger;
-  const auto start = bent();
+  const auto start = bent_pose();
   const auto before = test::allocations();
   const auto speeds = jogger.speeds({JogFrame::kTool, {.linear = {0.01, 0, 0}}}, start);
   EXPECT_EQ(test::allocations(), before);

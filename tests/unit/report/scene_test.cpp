@@ -29,7 +29,8 @@ TEST(Scene, KeepsTheFirstAndTheLastOfManyPoses) {
 }
 
 TEST(Scene, WithoutPosesSaysSo) {
-  EXPECT_THAT(to_figure({.title = "none"}), AllOf(HasSubstr("no data"), Not(HasSubstr("range"))));
+  EXPECT_THAT(to_figure(Scene{.title = "none"}),
+              AllOf(HasSubstr("no data"), Not(HasSubstr("range"))));
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ class WireLog : public ::testing::Test {
 };
 
 /// A message of the host that the shipped board answers at once.
-const auto kIdle = encode(parol6::CommandFrame{.command = parol6::Command::kIdle});
+const auto kIdleFrame = encode(parol6::CommandFrame{.command = parol6::Command::kIdle});
 
 TEST_F(WireLog, HasEveryByteBothWaysInPiecesAsTheyCame) {
   const auto port = logged_arm();
@@ -71,9 +71,9 @@ TEST_F(WireLog, HasEveryByteBothWaysInPiecesAsTheyCame) {
   test::Dice dice{5};
   for (int i = 0; i < 20; ++i) {
     const auto cut = static_cast<std::size_t>(dice.between(0, 56));
-    ASSERT_TRUE(port->write(Bytes{kIdle}.first(cut)));
-    ASSERT_TRUE(port->write(Bytes{kIdle}.subspan(cut)));
-    written = test::joined(std::move(written), kIdle);
+    ASSERT_TRUE(port->write(Bytes{kIdleFrame}.first(cut)));
+    ASSERT_TRUE(port->write(Bytes{kIdleFrame}.subspan(cut)));
+    written = test::joined(std::move(written), kIdleFrame);
     std::array<std::byte, 23> buffer;
     const auto deadline = port->now() + 10ms;
     while (const auto size = port->read(buffer, deadline).value()) {
@@ -89,7 +89,7 @@ TEST_F(WireLog, SaysWhen) {
   const auto port = logged_arm();
   std::array<std::byte, 64> buffer;
   ASSERT_EQ(port->read(buffer, at(30ms)).value(), 0U);
-  ASSERT_TRUE(port->write(kIdle));
+  ASSERT_TRUE(port->write(kIdleFrame));
   const auto events = trace().events;
   ASSERT_EQ(events.size(), 1U) << "nothing was read, so there is nothing to write down";
   EXPECT_EQ(events.front().time, at(30ms));
@@ -97,8 +97,8 @@ TEST_F(WireLog, SaysWhen) {
 
 TEST_F(WireLog, SaysWhatItMeansWhereAMessageEnds) {
   const auto port = logged_arm();
-  ASSERT_TRUE(port->write(Bytes{kIdle}.first(30)));
-  ASSERT_TRUE(port->write(Bytes{kIdle}.subspan(30)));
+  ASSERT_TRUE(port->write(Bytes{kIdleFrame}.first(30)));
+  ASSERT_TRUE(port->write(Bytes{kIdleFrame}.subspan(30)));
   const auto all = lines();
   ASSERT_EQ(all.size(), 3U);
   EXPECT_FALSE(all[1].contains("messages"));
@@ -109,7 +109,7 @@ TEST_F(WireLog, SaysWhatItMeansWhereAMessageEnds) {
 TEST_F(WireLog, HasEachLineOnDiskBeforeTheCallReturns) {
   const auto port = logged_arm();
   EXPECT_EQ(trace().device, "parol6");
-  ASSERT_TRUE(port->write(kIdle));
+  ASSERT_TRUE(port->write(kIdleFrame));
   EXPECT_EQ(trace().events.size(), 1U);
 }
 
@@ -124,7 +124,7 @@ TEST_F(WireLog, LeavesOutWhatWasNotWritten) {
   const auto port =
       std::make_unique<LoggedStream>(std::make_unique<Broken>(), parol6_log(path_).value());
   std::array<std::byte, 8> buffer;
-  EXPECT_FALSE(port->write(kIdle));
+  EXPECT_FALSE(port->write(kIdleFrame));
   EXPECT_FALSE(port->read(buffer, {}));
   EXPECT_TRUE(trace().events.empty());
 }
@@ -146,7 +146,8 @@ TEST_F(WireLog, EndsWithAWholeLineWhereTheDiskIsFull) {
     auto arm = std::make_unique<MemoryStream<parol6::emulation::Arm>>(parol6::emulation::Arm{});
     const LimitedFileSize limit{2'000};
     LoggedStream port{std::move(arm), parol6_log(file).value()};
-    for (int i = 0; i < 20; ++i) ASSERT_TRUE(port.write(kIdle)) << "the device is not to blame";
+    for (int i = 0; i < 20; ++i)
+      ASSERT_TRUE(port.write(kIdleFrame)) << "the device is not to blame";
   }
   ASSERT_TRUE(file->failure());
   EXPECT_EQ(file->failure()->where, path_);
@@ -196,9 +197,9 @@ TEST_F(CaptureOfAWire, HasTheSameInBothFormats) {
   EXPECT_THAT(
       recorded(LinkKind::kStream,
                [](LogOfOverheard& log) {
-                 log.to_device(at(1ms), Bytes{kIdle}.first(2));
+                 log.to_device(at(1ms), Bytes{kIdleFrame}.first(2));
                  log.on_input(at(2ms), "estop", 1);
-                 log.from_device(at(2ms), Bytes{kIdle}.first(1));
+                 log.from_device(at(2ms), Bytes{kIdleFrame}.first(1));
                  log.overlook(at(3ms), at(50ms));
                }),
       testing::ElementsAre(
@@ -277,7 +278,7 @@ TEST_F(CaptureOfAWire, RotatesIntoWholeFiles) {
           begin(other_,
                 {.format = format, .rotation = CaptureFile::Rotation{.bytes = 2'000, .files = 2}}),
           LinkKind::kStream};
-      for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdle);
+      for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdleFrame);
     }
     const auto before = read_trace(first).value().events;
     const auto after = read_trace(other_).value().events;
@@ -295,7 +296,7 @@ TEST_F(CaptureOfAWire, OfPacketsEndsWithAWholeOneWhereTheDiskIsFull) {
   {
     const LimitedFileSize limit{2'000};
     LogOfOverheard log{begin(other_, {.format = CaptureFormat::kPcapng}), LinkKind::kStream};
-    for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdle);
+    for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdleFrame);
   }
   const auto reader = CaptureReader::open(UserFile::open(other_).value(), other_).value();
   CaptureRecord record;

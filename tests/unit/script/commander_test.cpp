@@ -17,13 +17,13 @@ using parol6::planning::Move;
 using parol6::planning::Tracking;
 using ::testing::HasSubstr;
 
-ParseResult parse_line(std::string_view line) {
+ParseResult parse_program_line(std::string_view line) {
   return parse("Begin()\n" + std::string{line} + "\nEnd()\n", Dialect::kCommander);
 }
 
 /// The command of a line that passes the name check.
 Command command_of(std::string_view line) {
-  const auto program = parse_line(line);
+  const auto program = parse_program_line(line);
   if (!program) {
     ADD_FAILURE() << describe(program.error().front(), "line");
     return Dummy{};
@@ -55,7 +55,7 @@ TEST_P(TakenMove, IsUnderstoodAsTheCommanderDoes) {
   EXPECT_EQ(move.timing.duration, expected.timing.duration);
   EXPECT_EQ(move.timing.law, expected.timing.law);
   EXPECT_EQ(move.tracking, expected.tracking);
-  const auto remarks = parse_line(expected.line)->remarks;
+  const auto remarks = parse_program_line(expected.line)->remarks;
   ASSERT_EQ(remarks.size(), expected.ignored.empty() ? 0U : 1U);
   for (const auto& remark : remarks) EXPECT_THAT(remark.text, HasSubstr(expected.ignored));
 }
@@ -128,7 +128,7 @@ struct Unknown {
 class UnknownLine : public ::testing::TestWithParam<Unknown> {};
 
 TEST_P(UnknownLine, KeepsTheProgramFromStarting) {
-  const auto program = parse_line(GetParam().line);
+  const auto program = parse_program_line(GetParam().line);
   ASSERT_FALSE(program.has_value());
   ASSERT_EQ(program.error().size(), 1U);
   EXPECT_EQ(program.error().front().place, (Place{2, GetParam().column}));

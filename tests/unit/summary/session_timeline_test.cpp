@@ -19,7 +19,7 @@ using test::hex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const CaptureLink kArm{"arm", "parol6", LinkKind::kStream};
+const CaptureLink kTimedArm{"arm", "parol6", LinkKind::kStream};
 
 Message telemetry(Duration time, std::int64_t steps, std::int64_t io = 0x8F) {
   auto raw = parol6::vectors::kRestTelemetry;
@@ -39,11 +39,11 @@ const TimelineLane& lane(const Timeline& timeline, std::string_view title) {
 
 TEST(SessionTimeline, HasCurvesOfWhatMovesAndMarksThatNameMessages) {
   SessionTimeline session;
-  session.add(kArm, 0, jog(1ms));
-  session.add(kArm, 0, telemetry(2ms, 100));
-  session.add(kArm, 0, jog(11ms));
-  session.add(kArm, 0, telemetry(12ms, -50, 0x87));
-  session.add(kArm, 0, {Direction::kToDevice, at(13ms), "noise", hex("12"), {}, "no start"});
+  session.add(kTimedArm, 0, jog(1ms));
+  session.add(kTimedArm, 0, telemetry(2ms, 100));
+  session.add(kTimedArm, 0, jog(11ms));
+  session.add(kTimedArm, 0, telemetry(12ms, -50, 0x87));
+  session.add(kTimedArm, 0, {Direction::kToDevice, at(13ms), "noise", hex("12"), {}, "no start"});
   const auto timeline = session.timeline("session", at(20ms));
   ASSERT_EQ(timeline.charts.size(), 1);
   EXPECT_EQ(timeline.charts[0].title, "telemetry position / steps");
@@ -71,7 +71,7 @@ TEST(SessionTimeline, KeepsPeaksMarksAndMessagesOfLongSessionsWithinBounds) {
   constexpr int kPeak = 77'777;
   SessionTimeline session;
   for (int i = 0; i < kMany; ++i) {
-    session.add(kArm, 0, telemetry(i * 10ms, i == kPeak ? 9999 : 0, i % 2 == 0 ? 0x8F : 0x87));
+    session.add(kTimedArm, 0, telemetry(i * 10ms, i == kPeak ? 9999 : 0, i % 2 == 0 ? 0x8F : 0x87));
   }
   const auto timeline = session.timeline("session", at(kMany * 10ms));
   ASSERT_EQ(timeline.charts.size(), 1);

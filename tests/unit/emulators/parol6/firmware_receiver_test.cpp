@@ -67,7 +67,7 @@ ByteVector frame_of(std::size_t length, std::string_view end = "01 02") {
   return joined(std::move(bytes), tail);
 }
 
-ByteVector repeated(const ByteVector& bytes, int times) {
+ByteVector repetition(const ByteVector& bytes, int times) {
   ByteVector all;
   for (int i = 0; i < times; ++i) all = joined(std::move(all), bytes);
   return all;
@@ -109,13 +109,13 @@ TEST(FirmwareReceiver, TakesAFourthStartByteForTheLength) {  // R3
 
 TEST(FirmwareReceiver, LosesFiveFramesToOneStrayStartByte) {
   // The first, three whole ones and 34 bytes of the fifth; the sixth is the first to be answered.
-  EXPECT_EQ(answers_to(joined(hex("FF"), repeated(good(), 5))), 0U);
-  EXPECT_EQ(answers_to(joined(hex("FF"), repeated(good(), 6))), 1U);
-  EXPECT_EQ(answers_to(joined(hex("FF"), repeated(good(), 8))), 3U);
+  EXPECT_EQ(answers_to(joined(hex("FF"), repetition(good(), 5))), 0U);
+  EXPECT_EQ(answers_to(joined(hex("FF"), repetition(good(), 6))), 1U);
+  EXPECT_EQ(answers_to(joined(hex("FF"), repetition(good(), 8))), 3U);
 }
 
 TEST(FirmwareReceiver, IsDeafForTwelveFramesAfterLengthZero) {  // R11
-  EXPECT_EQ(answers_to(joined(hex("FF FF FF 00"), repeated(good(), 12))), 0U);
+  EXPECT_EQ(answers_to(joined(hex("FF FF FF 00"), repetition(good(), 12))), 0U);
 }
 
 TEST(FirmwareReceiver, TakesTheLengthFromThe256thByteAfterLengthZero) {
@@ -127,7 +127,7 @@ TEST(FirmwareReceiver, TakesTheLengthFromThe256thByteAfterLengthZero) {
 
 TEST(FirmwareReceiver, LosesAnother256BytesIfThe256thIsZero) {
   const auto deaf = joined(hex("FF FF FF 00"), zeros(256));
-  EXPECT_EQ(answers_to(joined(deaf, repeated(good(), 4))), 0U);
+  EXPECT_EQ(answers_to(joined(deaf, repetition(good(), 4))), 0U);
   // 256 more, then two bytes of payload that are no end; after that the parser is idle.
   EXPECT_EQ(answers_to(joined(deaf, zeros(255), hex("02 00 00"), good())), 1U);
 }
@@ -200,9 +200,9 @@ TEST(FirmwareReceiver, PassesOverNoiseBetweenFrames) {  // R8
 
 TEST(FirmwareReceiver, TakesWhatATruncatedFrameMissesFromTheNextOne) {  // R9
   const auto truncated = as_vector(Bytes{good()}.first(30));
-  EXPECT_EQ(answers_to(joined(truncated, repeated(good(), 1))), 0U);
-  EXPECT_EQ(answers_to(joined(truncated, repeated(good(), 2))), 1U);
-  EXPECT_EQ(answers_to(joined(truncated, repeated(good(), 3))), 2U);
+  EXPECT_EQ(answers_to(joined(truncated, repetition(good(), 1))), 0U);
+  EXPECT_EQ(answers_to(joined(truncated, repetition(good(), 2))), 1U);
+  EXPECT_EQ(answers_to(joined(truncated, repetition(good(), 3))), 2U);
 }
 
 TEST(FirmwareReceiver, IgnoresAFrameWithoutItsFirstByte) {  // R10
@@ -212,7 +212,7 @@ TEST(FirmwareReceiver, IgnoresAFrameWithoutItsFirstByte) {  // R10
 }
 
 TEST(FirmwareReceiver, AcceptsEveryFrameOfABurst) {
-  EXPECT_EQ(answers_to(repeated(good(), 20)), 20U);
+  EXPECT_EQ(answers_to(repetition(good(), 20)), 20U);
 }
 
 TEST(FirmwareReceiver, WaitsForTheRestAtEveryLength) {

@@ -13,7 +13,7 @@
 namespace armjig::kinovazed {
 namespace {
 
-Bytes bytes_of(std::string_view text) { return std::as_bytes(std::span{text}); }
+Bytes line_bytes(std::string_view text) { return std::as_bytes(std::span{text}); }
 
 /// What a server finds in segments that come one after the other: lines, "<too long>".
 class Server {
@@ -23,7 +23,7 @@ class Server {
   std::vector<std::string> hear(const std::vector<std::string>& segments) {
     std::vector<std::string> found;
     for (const auto& segment : segments) {
-      auto rest = bytes_of(segment);
+      auto rest = line_bytes(segment);
       for (;;) {
         const auto size = std::min(receiver_.room(), rest.size());
         receiver_.fill(rest.first(size));
@@ -124,7 +124,7 @@ std::vector<std::string> split(const std::vector<std::string>& segments) {
   LineSplitter splitter;
   std::vector<std::string> found;
   for (const auto& segment : segments) {
-    for (auto rest = bytes_of(segment); !rest.empty();) {
+    for (auto rest = line_bytes(segment); !rest.empty();) {
       const auto step = splitter.step(rest);
       rest = rest.subspan(step.used);
       if (step.found != LineSplitter::Found::kNothing) found.emplace_back(step.line);
