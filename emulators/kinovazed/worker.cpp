@@ -10,8 +10,8 @@ namespace {
 constexpr int kStartAttempts = 120;
 constexpr float kHighestCurrent = 4.5F;  // ampere, all joints together
 
-constexpr bool is_angular(Mode mode) noexcept {
-  return mode == Mode::kAxis1to3 || mode == Mode::kAxis4to6;
+constexpr bool is_angular(Mode chosen) noexcept {
+  return chosen == Mode::kAxis1to3 || chosen == Mode::kAxis4to6;
 }
 
 }  // namespace

@@ -22,13 +22,14 @@
 #include "emulators/lab/i2c_adapter.hpp"
 
 namespace armjig {
-namespace {
 
-struct Unref {
+struct GObjectUnref {
   void operator()(void* object) const noexcept { g_object_unref(object); }
 };
 template <class T>
-using Ref = std::unique_ptr<T, Unref>;
+using GObjectRef = std::unique_ptr<T, GObjectUnref>;
+
+namespace {
 
 /// A piece of the memory of the program whose call is answered.
 class ClientMemory {
@@ -62,7 +63,7 @@ class ClientMemory {
   }
 
  private:
-  Ref<UMockdevIoctlData> data_;
+  GObjectRef<UMockdevIoctlData> data_;
 };
 
 /// A call of a program, from the beginning to its answer.
@@ -294,8 +295,8 @@ class VirtualI2c::Bed {
  private:
   std::unique_ptr<I2cAdapter> adapter_;
   std::string path_;
-  Ref<UMockdevTestbed> bed_;
-  Ref<UMockdevIoctlBase> calls_;
+  GObjectRef<UMockdevTestbed> bed_;
+  GObjectRef<UMockdevIoctlBase> calls_;
 };
 
 Outcome<VirtualI2c> VirtualI2c::open(std::unique_ptr<HostedBus> bus, int number,

@@ -63,8 +63,8 @@ bool is_on(Scale scale, double value) noexcept {
 class Ruler {
  public:
   /// `parts` is about how many ticks it should have.
-  Ruler(Scale scale, Range data, int parts)
-      : scale_{scale}, parts_{parts}, low_{raw(data.low)}, high_{raw(data.high)} {
+  Ruler(Scale scale, Range values, int parts)
+      : scale_{scale}, parts_{parts}, low_{raw(values.low)}, high_{raw(values.high)} {
     if (high_ - low_ < kLeast) {  // one value only: it stands in the middle
       const bool is_small = scale == Scale::kLog || std::abs(low_) < kLeast;
       const double half = is_small ? 0.5 : std::abs(low_) / 2;

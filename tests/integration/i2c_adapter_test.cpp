@@ -31,7 +31,7 @@ i2c::Bus bus() {
       {.nodes = {{}}, .thermometers = {i2c::Thermometer{kThermometer.value}}});
 }
 
-std::vector<std::string> heard;
+std::vector<std::string> overheard;
 std::vector<Instant> times;
 
 /// A judge that writes down what it is shown.
@@ -40,19 +40,19 @@ class Overhearing final : public ProgramChecker {
   explicit Overhearing(const LinkNoise& /*noise*/) {}
 
   void to_device(Instant time, Bytes message) override {
-    heard.push_back(to_hex(message));
+    overheard.push_back(to_hex(message));
     times.push_back(time);
   }
   void from_device(Instant time, Bytes message) override { to_device(time, message); }
   void finish(Instant /*time*/) override {}
-  [[nodiscard]] std::size_t messages() const noexcept override { return heard.size(); }
+  [[nodiscard]] std::size_t messages() const noexcept override { return overheard.size(); }
 };
 
 /// What is heard of an adapter's bus.
 class I2cAdapterTest : public ::testing::Test {
  protected:
   I2cAdapterTest() {
-    heard.clear();
+    overheard.clear();
     times.clear();
   }
 
@@ -69,27 +69,27 @@ TEST_F(I2cAdapterTest, TellsWhatWasAcknowledgedOfEachMessage) {
   const auto choose = *from_hex("88");
   std::array<std::byte, 2> answer{};
   EXPECT_EQ(transfer({write_to(kNode, choose), read_from(kNode, answer)}), 0);
-  EXPECT_THAT(heard, ElementsAre("2488", "251212"));
+  EXPECT_THAT(overheard, ElementsAre("2488", "251212"));
   EXPECT_LT(times[0], times[1]);
 }
 
 TEST_F(I2cAdapterTest, TellsNothingOfAnAddressWhereNobodyIs) {
   const auto bytes = *from_hex("88");
   EXPECT_EQ(transfer({write_to(kNobody, bytes)}), ENXIO);
-  EXPECT_THAT(heard, IsEmpty());
+  EXPECT_THAT(overheard, IsEmpty());
 }
 
 TEST_F(I2cAdapterTest, LeavesOutTheByteThatWasRefused) {
   const auto bytes = *from_hex("09");
   EXPECT_EQ(transfer({write_to(kThermometer, bytes)}), EIO);
-  EXPECT_THAT(heard, ElementsAre("90"));
+  EXPECT_THAT(overheard, ElementsAre("90"));
 }
 
 TEST_F(I2cAdapterTest, TellsOfSmbusCommandsToo) {
   i2c_smbus_data data{};
   EXPECT_EQ(adapter->smbus(kNode, Access::kRead, 0x83, I2C_SMBUS_BYTE_DATA, data), 0);
   EXPECT_EQ(adapter->smbus(kNode, Access::kWrite, 0, I2C_SMBUS_QUICK, data), 0);
-  EXPECT_THAT(heard, ElementsAre("2483", "2503", "24"));
+  EXPECT_THAT(overheard, ElementsAre("2483", "2503", "24"));
 }
 
 TEST_F(I2cAdapterTest, TellsOneThingAtATimeWhoeverTalks) {
@@ -101,7 +101,7 @@ TEST_F(I2cAdapterTest, TellsOneThingAtATimeWhoeverTalks) {
   std::thread other{talk};
   talk();
   other.join();
-  EXPECT_EQ(heard.size(), 2U * kEach);
+  EXPECT_EQ(overheard.size(), 2U * kEach);
   EXPECT_TRUE(std::ranges::is_sorted(times));
 }
 

@@ -116,8 +116,8 @@ tl::expected<Plan, Refusal> planned_at_pace(Way way, const Timing& timing, Track
   if (!pace) return tl::unexpected{pace.error()};
   const auto fastest =
       motion::Trapezoid::fastest(0, way.of(leading), pace->speed, pace->acceleration);
-  constexpr double kRounding = 1e-9;
-  way.ticks = static_cast<std::size_t>(std::ceil(fastest.duration() / kTick - kRounding));
+  constexpr double kLeastPart = 1e-9;
+  way.ticks = static_cast<std::size_t>(std::ceil(fastest.duration() / kTick - kLeastPart));
   if (way.ticks == 0) {  // nowhere to go
     return planned_in_time(way, kTick, Law::kTrapezoid, tracking, limits);
   }
