@@ -28,15 +28,14 @@ struct FilterPlace {
   Coefficients ControllerSet::* filter;
   std::size_t place;
 };
-constexpr std::array kFilterPlaces{FilterPlace{&ControllerSet::d, 4},
-                                   FilterPlace{&ControllerSet::c, 22},
-                                   FilterPlace{&ControllerSet::f, 40}};
+constexpr std::array kPlaces{FilterPlace{&ControllerSet::d, 4}, FilterPlace{&ControllerSet::c, 22},
+                             FilterPlace{&ControllerSet::f, 40}};
 
 ControllerSet decode_stored_set(Bytes in) noexcept {
   ControllerSet set;
   set.kind = ControllerKind{std::to_integer<std::uint8_t>(in[0])};
   set.rate_hz = load_u16_le(slice<2>(in, kRatePlace));
-  for (const auto& [member, place] : kFilterPlaces) {
+  for (const auto& [member, place] : kPlaces) {
     auto& filter = set.*member;
     filter.count =
         std::min<std::uint8_t>(std::to_integer<std::uint8_t>(in[place]), kMostCoefficients);
@@ -51,7 +50,7 @@ ControllerSet decode_stored_set(Bytes in) noexcept {
 void store_set(std::span<std::byte> out, const ControllerSet& set) noexcept {
   store_u16_le(slice<2>(out, 0), static_cast<std::uint16_t>(set.kind));
   store_u16_le(slice<2>(out, kRatePlace), set.rate_hz);
-  for (const auto& [member, place] : kFilterPlaces) {
+  for (const auto& [member, place] : kPlaces) {
     const auto& filter = set.*member;
     store_u16_le(slice<2>(out, place), filter.count);
     for (std::size_t i = 0; i < kMostCoefficients; ++i) {
@@ -84,7 +83,7 @@ ReadBack read_back(const ControllerSet& set) noexcept {
   };
   send(0, 1);
   send(kRatePlace, 2);
-  for (const auto& [filter, place] : kFilterPlaces) {
+  for (const auto& [filter, place] : kPlaces) {
     send(place, 1);
     send(place + 2, std::size_t{4} * (set.*filter).count);
   }

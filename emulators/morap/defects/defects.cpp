@@ -11,7 +11,7 @@
 namespace armjig::morap::emulation {
 namespace {
 
-using Words = std::vector<std::byte>;
+using MessageBytes = std::vector<std::byte>;
 
 /// Whether `bytes` are all of a command, and no more; so are those of a set whose count or checksum
 /// the node refuses.
@@ -45,7 +45,7 @@ std::span<const Field> fields_of_answer(CommandId selected, Bytes answer) {
 }
 
 /// Fields stand behind the byte with the address, which is not there.
-void change(Words& bytes, const FieldFault& wrong, std::span<const Field> fields,
+void change(MessageBytes& bytes, const FieldFault& wrong, std::span<const Field> fields,
             std::optional<std::int64_t>& memory) {
   const auto* field = find_field(fields, wrong.field);
   if (field == nullptr) return;
@@ -55,7 +55,7 @@ void change(Words& bytes, const FieldFault& wrong, std::span<const Field> fields
 }
 
 /// A changed parameter is sent with the checksum that it then has: nobody takes note of the fault.
-void renew_checksum(Words& set) {
+void renew_checksum(MessageBytes& set) {
   const auto decoded = decode_set(set);
   if (!std::holds_alternative<SetFault>(decoded)) return;
   if (std::get<SetFault>(decoded).kind != SetFault::Kind::kWrongChecksum) return;
@@ -131,7 +131,7 @@ void DefectiveNode::replay(Instant time, Bytes command) {
   for (const auto byte : command) std::ignore = node_.write(time, byte);
 }
 
-Words DefectiveNode::heard(Instant time) {
+MessageBytes DefectiveNode::heard(Instant time) {
   auto command = transaction_.bytes;
   const CommandId id{std::to_integer<std::uint8_t>(command[0])};
   node_.advance_to(time - Duration{1});
@@ -140,7 +140,7 @@ Words DefectiveNode::heard(Instant time) {
     if (wrong.id != id) continue;
     change(command, wrong, fields_of_command(command), field_memories_[i]);
     if (id != CommandId::kProgram || wrong.field == "checksum") continue;
-    Words set{command.begin() + 1, command.end()};
+    MessageBytes set{command.begin() + 1, command.end()};
     renew_checksum(set);
     std::ranges::copy(set, command.begin() + 1);
   }

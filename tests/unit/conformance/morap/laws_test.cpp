@@ -41,9 +41,9 @@ float any_number(float most) {
 }
 
 /// A node with a held shaft, calibrated there.
-class Bench {
+class Workbench {
  public:
-  explicit Bench(const Motor& motor) : desk_{{.eeprom = eeprom_of(motor)}} {
+  explicit Workbench(const Motor& motor) : desk_{{.eeprom = eeprom_of(motor)}} {
     send({CommandId::kCalibrateZero});
     tick();
   }
@@ -93,7 +93,7 @@ TEST(MorapLaw, LimitsTheDriveVoltageBySpeed) {
     const auto& motor = any_motor();
     const MotorLaw law{motor};
     const float volts = any_number(25.0F);
-    Bench bench{motor};
+    Workbench bench{motor};
     bench.send({CommandId::kVoltage, volts});
     bench.tick();
     int counts = 0;
@@ -113,7 +113,7 @@ TEST(MorapLaw, DrivesATorqueOverAMovingShaft) {
     const auto& motor = any_motor();
     const MotorLaw law{motor};
     const float torque = any_number(12.0F);
-    Bench bench{motor};
+    Workbench bench{motor};
     bench.send({CommandId::kTorque, torque});
     bench.tick();
     int counts = 0;
@@ -148,7 +148,7 @@ ControllerSet any_set() {
 
 /// The applied voltages of a loop while the shaft and the reference wander.
 void expect_same_loop(const Motor& motor, const ControllerSet& set, int ticks) {
-  Bench bench{motor};
+  Workbench bench{motor};
   const MotorLaw law{motor};
   const auto id = set.kind == ControllerKind::kSpeed ? CommandId::kSpeed : CommandId::kPosition;
   float reference = any_number(2.0F);
