@@ -32,7 +32,7 @@ i2c::Bus bus() {
 }
 
 std::vector<std::string> overheard;
-std::vector<Instant> times;
+std::vector<Instant> overheard_at;
 
 /// A judge that writes down what it is shown.
 class Overhearing final : public ProgramChecker {
@@ -41,7 +41,7 @@ class Overhearing final : public ProgramChecker {
 
   void to_device(Instant time, Bytes message) override {
     overheard.push_back(to_hex(message));
-    times.push_back(time);
+    overheard_at.push_back(time);
   }
   void from_device(Instant time, Bytes message) override { to_device(time, message); }
   void finish(Instant /*time*/) override {}
@@ -53,7 +53,7 @@ class I2cAdapterTest : public ::testing::Test {
  protected:
   I2cAdapterTest() {
     overheard.clear();
-    times.clear();
+    overheard_at.clear();
   }
 
   int transfer(const std::vector<BusMessage>& messages) { return adapter->transfer(messages); }
@@ -70,7 +70,7 @@ TEST_F(I2cAdapterTest, TellsWhatWasAcknowledgedOfEachMessage) {
   std::array<std::byte, 2> answer{};
   EXPECT_EQ(transfer({write_to(kNode, choose), read_from(kNode, answer)}), 0);
   EXPECT_THAT(overheard, ElementsAre("2488", "251212"));
-  EXPECT_LT(times[0], times[1]);
+  EXPECT_LT(overheard_at[0], overheard_at[1]);
 }
 
 TEST_F(I2cAdapterTest, TellsNothingOfAnAddressWhereNobodyIs) {
@@ -102,7 +102,7 @@ TEST_F(I2cAdapterTest, TellsOneThingAtATimeWhoeverTalks) {
   talk();
   other.join();
   EXPECT_EQ(overheard.size(), 2U * kEach);
-  EXPECT_TRUE(std::ranges::is_sorted(times));
+  EXPECT_TRUE(std::ranges::is_sorted(overheard_at));
 }
 
 }  // namespace
