@@ -337,10 +337,13 @@ Outcome<void> add_cost(LatencyRun& run, const Device& device, const LatencyOptio
 void finish(LatencyRun& run, const Wanted& wanted) {
   for (const auto& limit : wanted.limits) run.limits.push_back(check(limit, run.measured));
   if (!wanted.baseline) return;
-  const auto rows = percentiles_of(run.measured);
-  if (rows.empty() || !rows.front().interval) return;
-  run.comparison =
-      compare_with(*wanted.baseline, rows.front().raw, *rows.front().interval, kLatencyConfidence);
+  if (const auto floor = noise_floor_of(run.measured)) {
+    const auto median = percentiles_of(run.measured).front().raw;
+    run.comparison = compare_with(*wanted.baseline, median, *floor);
+  } else {
+    run.comparison = LatencyComparison{.rests_on = "too few answers for a noise floor",
+                                       .difference = Difference::kUnclear};
+  }
 }
 
 /// The run that is in the file, a recording or a log of histograms.

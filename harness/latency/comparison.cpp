@@ -16,6 +16,8 @@ namespace {
 /// Two figures are looked at, so that in all one of 100 comparisons of the same errs.
 constexpr double kConfidence = 0.995;
 constexpr std::size_t kFewestPairs = 10;
+/// A noise floor has at least that of its bootstrap.
+constexpr double kFloorConfidence = 0.99;
 
 Difference verdict_of(const ConfidenceInterval& interval) noexcept {
   if (interval.low > Duration{}) return Difference::kSlower;
@@ -140,31 +142,28 @@ Outcome<Baseline> parse_baseline(std::string_view json, const std::string& where
     return wrong("it is no report of armjig latency --json");
   }
   try {
-    for (const auto& one : content.at("round_trip").at("percentiles")) {
-      if (one.at("percent").get<double>() != 50.0) continue;
-      const auto time = [&one](const char* name) {
-        return Duration{one.at(name).get<Duration::rep>()};
-      };
-      return Baseline{.median = time("ns"),
-                      .interval = {time("low_ns"), time("high_ns")},
-                      .text = fmt::format("{} of {}", content.at("target").get<std::string>(),
-                                          content.at("date").get<std::string>())};
-    }
+    const auto& round_trip = content.at("round_trip");
+    const auto time = [](const nlohmann::json& object, const char* name) {
+      return Duration{object.at(name).get<Duration::rep>()};
+    };
+    const auto& floor = round_trip.at("noise_floor");
+    return Baseline{.median = time(round_trip, "p50_ns"),
+                    .noise = {time(floor, "low_ns"), time(floor, "high_ns")},
+                    .text = fmt::format("{} of {}", content.at("target").get<std::string>(),
+                                        content.at("date").get<std::string>())};
   } catch (const nlohmann::json::exception&) {
-    return wrong("a figure is missing in it or is no number");
+    return wrong("a figure is missing in it or is no number: was it too short?");
   }
-  return wrong("it has no median");
 }
 
 LatencyComparison compare_with(const Baseline& baseline, Duration median,
-                               const ConfidenceInterval& interval, double confidence) {
+                               const ConfidenceInterval& noise) {
   Compared compared{.figure = "median", .first = baseline.median, .second = median};
-  compared.interval = {interval.low - baseline.interval.high,
-                       interval.high - baseline.interval.low};
+  compared.interval = {noise.low - baseline.noise.high, noise.high - baseline.noise.low};
   compared.difference = verdict_of(compared.interval);
   return {.figures = {compared},
-          .confidence = confidence,
-          .rests_on = "intervals of both runs: " + baseline.text,
+          .confidence = kFloorConfidence,
+          .rests_on = "noise floors of both runs: " + baseline.text,
           .difference = compared.difference};
 }
 

@@ -48,19 +48,18 @@ struct Slice {
                                                    std::span<const Slice> second,
                                                    std::uint64_t seed);
 
-/// A figure of a stored run, with its noise floor: what it was, and between which values it lay.
+/// The median of a stored run, and its noise floor: between what that of another run may lie.
 struct Baseline {
   Duration median{};
-  ConfidenceInterval interval{};
+  ConfidenceInterval noise{};
   std::string text;  ///< target and date, for people
 };
 
 /// Reads a run that was stored as JSON. Problems: `kMalformed`; `where` is for messages.
 [[nodiscard]] Outcome<Baseline> parse_baseline(std::string_view json, const std::string& where);
 
-/// Slower or faster only if both intervals of the median lie apart: what two runs of the same
-/// differ by is in there as far as each of them saw it.
+/// Slower or faster only if the noise floors of both runs lie apart.
 [[nodiscard]] LatencyComparison compare_with(const Baseline& baseline, Duration median,
-                                             const ConfidenceInterval& interval, double confidence);
+                                             const ConfidenceInterval& noise);
 
 }  // namespace armjig

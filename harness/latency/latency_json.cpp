@@ -24,6 +24,10 @@ Json summary_of(const LatencyHistogram& histogram) {
 Json round_trip_of(const Measured& measured) {
   Json json = summary_of(measured.round_trips);
   json["confidence"] = kLatencyConfidence;
+  json["noise_floor"] = nullptr;
+  if (const auto floor = noise_floor_of(measured)) {
+    json["noise_floor"] = {{"low_ns", floor->low.count()}, {"high_ns", floor->high.count()}};
+  }
   json["percentiles"] = Json::array();
   for (const auto& row : percentiles_of(measured)) {
     const auto end = [&row](Duration ConfidenceInterval::* which) {

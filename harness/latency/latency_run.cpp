@@ -326,6 +326,26 @@ std::vector<PercentileRow> percentiles_of(const Measured& measured) {
   return rows;
 }
 
+std::optional<ConfidenceInterval> noise_floor_of(const Measured& measured) {
+  constexpr std::size_t kStretches = 10;
+  constexpr double kDeviations = 3;  // as many as normal values hardly ever lie out
+  const auto rows = percentiles_of(measured);
+  if (rows.empty() || !rows.front().interval) return std::nullopt;
+  const std::span trips{measured.trips};
+  const auto size = trips.size() / kStretches;
+  if (size == 0) return std::nullopt;
+  const auto median = static_cast<double>(rows.front().raw.count());
+  double squares = 0;
+  for (std::size_t i = 0; i < kStretches; ++i) {
+    const auto off = static_cast<double>(slice_of(trips.subspan(i * size, size)).median.count());
+    squares += (off - median) * (off - median);
+  }
+  const Duration noise{std::llround(kDeviations * std::sqrt(squares / kStretches))};
+  return ConfidenceInterval{
+      std::max(Duration{}, std::min(rows.front().interval->low, rows.front().raw - noise)),
+      std::max(rows.front().interval->high, rows.front().raw + noise)};
+}
+
 std::vector<Share> shares_of(const LatencyRun& run) {
   const auto& measured = run.measured;
   std::vector<Share> shares;

@@ -72,6 +72,11 @@ inline constexpr double kLatencyConfidence = 0.99;
 /// Those that enough answers stand behind, from 50 %.
 [[nodiscard]] std::vector<PercentileRow> percentiles_of(const Measured& measured);
 
+/// Between what the median of another run of the same may lie: what a bootstrap of the trips says,
+/// and how far stretches of a tenth of the run lay apart, for what comes over a machine for seconds
+/// is in no bootstrap. None: their order is not known, or they are too few.
+[[nodiscard]] std::optional<ConfidenceInterval> noise_floor_of(const Measured& measured);
+
 /// As far as kernel and arithmetic allow.
 [[nodiscard]] std::vector<Share> shares_of(const LatencyRun& run);
 

@@ -127,12 +127,34 @@ TEST(LatencyJson, IsABaselineForTheNextRun) {
   const auto baseline = parse_baseline(to_latency_json(run_of(2ms)), "file").value();
   EXPECT_EQ(baseline.median, 2ms);
   const auto compare = [&baseline](Duration delay) {
-    const auto row = percentiles_of(run_of(delay).measured).front();
-    return compare_with(baseline, row.raw, row.interval.value(), kLatencyConfidence).difference;
+    const auto measured = run_of(delay).measured;
+    const auto median = percentiles_of(measured).front().raw;
+    return compare_with(baseline, median, noise_floor_of(measured).value()).difference;
   };
   EXPECT_EQ(compare(2ms), Difference::kNone);
   EXPECT_EQ(compare(2200us), Difference::kSlower);
   EXPECT_EQ(compare(1800us), Difference::kFaster);
+}
+
+TEST(LatencyJson, IsABaselineThatKnowsHowItsRunDrifted) {
+  const auto measured_of = [](Duration drift) {
+    Measured measured;
+    for (int i = 0; i < 1'000; ++i) {
+      measured.trips.push_back({.sent = at(i * 10ms), .duration = 2ms + i * drift});
+      measured.round_trips.record(measured.trips.back().duration);
+    }
+    return measured;
+  };
+  const auto steady = measured_of(0ns);
+  const auto drifting = measured_of(400ns);
+  const auto flagged = [](const Measured& first, Duration second) {
+    const LatencyRun run{.device = "echo", .target = "emulated:", .measured = first};
+    const auto baseline = parse_baseline(to_latency_json(run), "file").value();
+    return compare_with(baseline, second, {second - 1us, second + 1us}).difference;
+  };
+  EXPECT_EQ(flagged(steady, 2050us), Difference::kSlower);
+  EXPECT_EQ(flagged(drifting, 2450us), Difference::kNone) << "the run itself came as far";
+  EXPECT_EQ(flagged(drifting, 2600us), Difference::kSlower);
 }
 
 TEST(LatencyJson, IsValidAgainstItsSchema) {
