@@ -73,7 +73,8 @@ Outcome<Session> read_session(const std::string& path, const ForeignHow& how) {
     const auto& link = *record.link;
     if (is_talk(link.kind)) {
       if (!session) {
-        session = Session{link, {link.device, link.device, LinkKind::kEvents}, std::move(before)};
+        session = Session{link, {link.device, link.device, LinkKind::kEvents}, {}};
+        session->records.swap(before);
       } else if (link != session->link) {
         return problem(ErrorCode::kUnsupported, path,
                        fmt::format("it has two links, '{}' and '{}': cut one out with armjig trace "

@@ -427,7 +427,7 @@ class BusPlaying : public Playing {
 
   /// Such buses do not say which byte was refused: the recorded one, if there is one.
   static std::string refusal_of(const Part& part, Transfer how, std::size_t count) {
-    const auto recorded = text_of(part.details, "ack");
+    auto recorded = text_of(part.details, "ack");
     const bool is_address = recorded == "N";
     const bool is_byte = recorded.size() > 1 && recorded.ends_with('N');
     if (count > 1 || (how == Transfer::kAddressRefused ? is_address : is_byte)) return recorded;
