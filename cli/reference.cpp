@@ -56,7 +56,7 @@ Outcome<std::unique_ptr<typename Kind::Port>> open_served(const Kind& kind, cons
     return problem(ErrorCode::kUnsupported, target.text, "a bus cannot be hosted in this process");
   } else {
     HostOptions how;
-    if (std::is_same_v<Kind, OnServer> || scheme == "tcp") {
+    if (std::is_same_v<Kind, OnServer> || scheme == "tcp" || scheme == "rfc2217") {
       how.tcp.emplace();
     } else {
       how.pty.emplace();

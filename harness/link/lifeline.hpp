@@ -13,6 +13,7 @@ struct Lifeline {
   /// and direction first, and is a write. Does nothing but system calls, and may fail: call it
   /// again.
   void (*send)(int descriptor, Bytes message) noexcept {};
+  bool is_plain = true;  ///< what is read and written on the file is what the port reads and writes
 };
 
 }  // namespace armjig

@@ -13,7 +13,8 @@ std::optional<DirectLine> line_of(Port& port) {
   auto* const guarded = dynamic_cast<Guarded*>(&port);
   if (guarded == nullptr) return std::nullopt;
   const auto lifeline = guarded->lifeline();
-  return lifeline ? std::optional{DirectLine{lifeline->descriptor, guarded}} : std::nullopt;
+  if (!lifeline || !lifeline->is_plain) return std::nullopt;
+  return DirectLine{lifeline->descriptor, guarded};
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct DirectLine {
 };
 
 /// None where something is between that has to see the bytes, or no file: a recording, impairments,
-/// a bus, a device in memory. `port` was opened with `options`.
+/// a bus, a device in memory, a port over Telnet. `port` was opened with `options`.
 [[nodiscard]] std::optional<DirectLine> direct_line(StreamPort& port, const RigOptions& options);
 
 }  // namespace armjig

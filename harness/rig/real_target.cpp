@@ -6,6 +6,7 @@
 #include "harness/link/i2c_dev.hpp"
 #include "harness/link/i2c_tiny_usb.hpp"
 #include "harness/link/real_streams.hpp"
+#include "harness/link/rfc2217_stream.hpp"
 #include "harness/link/serial_stream.hpp"
 #include "harness/link/tcp_session.hpp"
 
@@ -46,6 +47,7 @@ Outcome<std::unique_ptr<StreamPort>> open_target(const Target& target, const Ser
   if (target.scheme == "serial") return open_serial_target(target, line);
   if (target.scheme == "usb") return open_usb_target(target, line);
   if (target.scheme == "tcp") return open_tcp_stream(target.address);
+  if (target.scheme == "rfc2217") return open_rfc2217(target.address, line);
   return no_target(target.text);
 }
 

@@ -12,7 +12,8 @@ namespace armjig {
 namespace {
 
 constexpr auto kForms =
-    "this is no target; write emulated:, serial:PATH, usb:VID:PID, pty:PATH or tcp:HOST:PORT; "
+    "this is no target; write emulated:, serial:PATH, usb:VID:PID, pty:PATH, tcp:HOST:PORT or "
+    "rfc2217:HOST:PORT; "
     "'armjig devices' lists what is plugged in";
 
 }  // namespace

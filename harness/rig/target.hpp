@@ -13,6 +13,7 @@ namespace armjig {
 ///     usb:0483:5740                the serial port of the only USB device with that VID:PID
 ///     pty:/dev/pts/5               a pseudo-terminal, such as that of an emulator
 ///     tcp:HOST:PORT                a byte stream over TCP, or a server
+///     rfc2217:HOST:PORT[,BAUD]     a serial port of another machine over Telnet
 ///     i2c:/dev/i2c-1               an I2C bus of Linux
 ///     i2c-tiny-usb:[SERIAL]        the only adapter of that kind, or the one with that number
 struct Target {

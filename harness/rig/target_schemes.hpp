@@ -7,7 +7,7 @@
 namespace armjig {
 
 /// What targets begin with.
-inline constexpr std::array<std::string_view, 7> kTargetSchemes{
-    "emulated:", "serial:", "usb:", "pty:", "tcp:", "i2c:", "i2c-tiny-usb:"};
+inline constexpr std::array<std::string_view, 8> kTargetSchemes{
+    "emulated:", "serial:", "usb:", "pty:", "tcp:", "rfc2217:", "i2c:", "i2c-tiny-usb:"};
 
 }  // namespace armjig

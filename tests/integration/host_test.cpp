@@ -20,6 +20,7 @@
 #include "emulators/parol6/arm.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/link/real_streams.hpp"
+#include "harness/link/rfc2217_stream.hpp"
 #include "harness/link/tcp_connection.hpp"
 #include "harness/link/tcp_session.hpp"
 #include "tests/integration/support/program.hpp"
@@ -459,6 +460,15 @@ TEST(HostOnRfc2217, HoldsBackWhatAClientHasSuspended) {
   // Suspend, a request of the device, purge: its confirmation comes alone.
   EXPECT_EQ(say(*client, "fffa2c08fff0a5718efffa2c0c01fff0", 7), "fffa2c7001fff0");
   EXPECT_EQ(say(*client, "fffa2c09fff0", 4), kReadyEscaped);
+}
+
+TEST(HostOnRfc2217, IsATargetOfOurs) {
+  Running host{demo_device()};
+  for (int i = 0; i < 3; ++i) {
+    const auto client = open_or_die(open_rfc2217(host.rfc2217()));
+    EXPECT_EQ(say(*client, "a5718e", 3), kReady);
+  }
+  EXPECT_EQ(host.stop().links.frames_dropped, 0U);
 }
 
 TEST(HostOnTcp, SaysThatThePortIsInUse) {

@@ -2,8 +2,8 @@
 #include "harness/wire/telnet/com_port.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
-#include <utility>
 
 namespace armjig::telnet {
 namespace {
@@ -20,20 +20,31 @@ void append(Answer& answer, Bytes bytes) {
   std::ranges::copy(bytes, answer.extend(bytes.size()).begin());
 }
 
-void append(Answer& answer, ComPortCode code, Bytes value) {
-  constexpr std::uint8_t kOfServer = 100;
+/// Of a server, unless `first` is another number for code 0.
+constexpr std::uint8_t kOfServer = 100;
+constexpr std::uint8_t kOfClient = 0;
+
+void append(Answer& answer, ComPortCode code, Bytes value, std::uint8_t first = kOfServer) {
   answer.push_back(kIac);
   answer.push_back(kSubnegotiationBegin);
   answer.push_back(static_cast<std::byte>(Option::kComPort));
-  answer.push_back(static_cast<std::byte>(static_cast<std::uint8_t>(code) + kOfServer));
+  answer.push_back(static_cast<std::byte>(static_cast<std::uint8_t>(code) + first));
   escape(value, [&](Bytes piece) { append(answer, piece); });
   answer.push_back(kIac);
   answer.push_back(kSubnegotiationEnd);
 }
 
-void append(Answer& answer, ComPortCode code, std::uint8_t value) {
+void append(Answer& answer, ComPortCode code, std::uint8_t value, std::uint8_t first = kOfServer) {
   const auto byte = static_cast<std::byte>(value);
-  append(answer, code, Bytes{&byte, 1});
+  append(answer, code, Bytes{&byte, 1}, first);
+}
+
+/// Most significant byte first.
+std::array<std::byte, 4> four_bytes(std::uint32_t value) {
+  std::array<std::byte, 4> bytes{};
+  store_u16_be(std::span{bytes}.first<2>(), static_cast<std::uint16_t>(value >> 16));
+  store_u16_be(std::span{bytes}.last<2>(), static_cast<std::uint16_t>(value));
+  return bytes;
 }
 
 /// A number of that many bytes, most significant first; 0, which asks, for any other length.
@@ -47,36 +58,21 @@ std::uint32_t number(Bytes bytes, std::size_t size) {
 }  // namespace
 
 Answer ComPortServer::begin() noexcept {
+  using enum Agreements::Direction;
   Answer answer;
-  for (auto& directions : options_) {
-    directions.theirs = Agreement::kAsked;
-    append(answer, encode({Verb::kDo, directions.option}));
-    if (directions.option == Option::kComPort) continue;  // the client's wish, if it has it
-    directions.ours = Agreement::kAsked;
-    append(answer, encode({Verb::kWill, directions.option}));
+  for (const auto option : {Option::kBinary, Option::kSuppressGoAhead}) {
+    append(answer, agreements_.ask(option, kTheirs));
+    append(answer, agreements_.ask(option, kOurs));
   }
+  append(answer, agreements_.ask(Option::kComPort, kTheirs));
   return answer;
 }
 
 Answer ComPortServer::on(Negotiation negotiation) noexcept {
-  const auto verb = negotiation.verb;
-  const bool is_theirs = verb == Verb::kWill || verb == Verb::kWont;
-  const bool is_wish = verb == Verb::kWill || verb == Verb::kDo;
-  const auto yes = is_theirs ? Verb::kDo : Verb::kWill;
-  const auto no = is_theirs ? Verb::kDont : Verb::kWont;
-  const auto known = std::ranges::find(options_, negotiation.option, &Directions::option);
   Answer answer;
-  if (known == options_.end()) {
-    if (is_wish) append(answer, encode({no, negotiation.option}));
-    return answer;
-  }
-  const bool had_com_port = has_com_port();
-  auto& agreement = is_theirs ? known->theirs : known->ours;
-  const auto before = std::exchange(agreement, is_wish ? Agreement::kYes : Agreement::kNo);
-  // What we asked for needs no answer, and what holds already none either, so nobody loops.
-  if (is_wish && before == Agreement::kNo) append(answer, encode({yes, negotiation.option}));
-  if (!is_wish && before == Agreement::kYes) append(answer, encode({no, negotiation.option}));
-  if (!had_com_port && has_com_port()) {
+  const bool had_com_port = agreements_.has_com_port();
+  append(answer, agreements_.on(negotiation));
+  if (!had_com_port && agreements_.has_com_port()) {
     append(answer, ComPortCode::kNotifyModemState, kModemState & modem_mask_);
   }
   return answer;
@@ -84,7 +80,8 @@ Answer ComPortServer::on(Negotiation negotiation) noexcept {
 
 Answer ComPortServer::on(const Subnegotiation& request) noexcept {
   Answer answer;
-  if (request.option != Option::kComPort || !has_com_port() || request.bytes.empty()) return answer;
+  if (request.option != Option::kComPort || !agreements_.has_com_port() || request.bytes.empty())
+    return answer;
   const auto code = static_cast<ComPortCode>(request.bytes[0]);
   const auto value = request.bytes.subspan(1);
   const auto byte = static_cast<std::uint8_t>(number(value, 1));
@@ -95,11 +92,7 @@ Answer ComPortServer::on(const Subnegotiation& request) noexcept {
       break;
     case ComPortCode::kBaudRate: {
       if (const auto rate = number(value, 4); rate != 0) settings_.baud_rate = rate;
-      std::array<std::byte, 4> rate{};
-      store_u16_be(std::span{rate}.first<2>(),
-                   static_cast<std::uint16_t>(settings_.baud_rate >> 16));
-      store_u16_be(std::span{rate}.last<2>(), static_cast<std::uint16_t>(settings_.baud_rate));
-      append(answer, code, rate);
+      append(answer, code, four_bytes(settings_.baud_rate));
       break;
     }
     case ComPortCode::kDataSize:
@@ -146,11 +139,6 @@ Answer ComPortServer::on(const Subnegotiation& request) noexcept {
       break;
   }
   return answer;
-}
-
-bool ComPortServer::has_com_port() const noexcept {
-  const auto& com_port = options_.back();
-  return com_port.ours == Agreement::kYes || com_port.theirs == Agreement::kYes;
 }
 
 void ComPortServer::settle(ComPortCode code, std::uint8_t value, std::uint8_t& setting,
@@ -205,6 +193,76 @@ void ComPortServer::set_control(std::uint8_t value, Answer& answer) noexcept {
       return;  // a number that RFC 2217 does not have
   }
   append(answer, ComPortCode::kControl, holds);
+}
+
+namespace {
+
+constexpr unsigned bit_of(ComPortCode code) noexcept { return 1U << static_cast<unsigned>(code); }
+
+constexpr std::uint8_t kNoFlowControl = 1;
+constexpr std::uint8_t kDtrOn = 8;
+constexpr std::uint8_t kRtsOn = 11;
+
+}  // namespace
+
+ComPortClient::Request ComPortClient::begin() noexcept {
+  using enum Agreements::Direction;
+  Request request;
+  for (const auto option : {Option::kBinary, Option::kSuppressGoAhead}) {
+    append(request, agreements_.ask(option, kOurs));
+    append(request, agreements_.ask(option, kTheirs));
+  }
+  append(request, agreements_.ask(Option::kComPort, kOurs));
+  return request;
+}
+
+ComPortClient::Request ComPortClient::on(Negotiation negotiation) noexcept {
+  Request request;
+  append(request, agreements_.on(negotiation));
+  if (asked_ || !agreements_.has_com_port()) return request;
+  asked_ = true;
+  using enum ComPortCode;
+  append(request, kBaudRate, four_bytes(wanted_.baud_rate), kOfClient);
+  append(request, kDataSize, wanted_.data_size, kOfClient);
+  append(request, kParity, wanted_.parity, kOfClient);
+  append(request, kStopSize, wanted_.stop_size, kOfClient);
+  for (const auto value : {kNoFlowControl, kDtrOn, kRtsOn}) {
+    append(request, kControl, value, kOfClient);
+  }
+  for (const auto code : {kBaudRate, kDataSize, kParity, kStopSize, kControl}) {
+    missing_ |= bit_of(code);
+  }
+  return request;
+}
+
+void ComPortClient::on(const Subnegotiation& answer) noexcept {
+  if (answer.option != Option::kComPort || answer.bytes.empty()) return;
+  const auto number_of = std::to_integer<std::uint8_t>(answer.bytes[0]);
+  if (number_of < kOfServer) return;
+  const auto code = static_cast<ComPortCode>(number_of - kOfServer);
+  const auto value = answer.bytes.subspan(1);
+  const auto byte = number(value, 1);
+  switch (code) {
+    case ComPortCode::kBaudRate:
+      return expect(code, wanted_.baud_rate, number(value, 4));
+    case ComPortCode::kDataSize:
+      return expect(code, wanted_.data_size, byte);
+    case ComPortCode::kParity:
+      return expect(code, wanted_.parity, byte);
+    case ComPortCode::kStopSize:
+      return expect(code, wanted_.stop_size, byte);
+    case ComPortCode::kControl:
+      // What a server says of lines that its port does not have is its own affair.
+      return expect(code, byte, byte);
+    default:
+      return;
+  }
+}
+
+void ComPortClient::expect(ComPortCode code, std::uint32_t wanted, std::uint32_t said) noexcept {
+  if ((missing_ & bit_of(code)) == 0) return;
+  missing_ &= ~bit_of(code);
+  if (wanted != said && !refused_) refused_ = Refused{code, said};
 }
 
 }  // namespace armjig::telnet

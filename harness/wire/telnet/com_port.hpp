@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <optional>
 
-#include "harness/wire/telnet/telnet.hpp"
+#include "harness/wire/telnet/agreements.hpp"
 
-/// The serial port behind a Telnet connection (RFC 2217), from the side that has the port.
+/// The serial port behind a Telnet connection (RFC 2217), from the side that has the port and from
+/// the side that uses it.
 namespace armjig::telnet {
 
 /// What a client asks for; the answer has the number plus 100.
@@ -59,24 +60,48 @@ class ComPortServer {
   [[nodiscard]] bool is_suspended() const noexcept { return is_suspended_; }
 
  private:
-  /// Of one option in one direction (RFC 1143 without its queue: we never take back a wish).
-  enum class Agreement : std::uint8_t { kNo, kAsked, kYes };
-  struct Directions {
-    Option option{};
-    Agreement ours = Agreement::kNo;    ///< WILL of us, DO of the client
-    Agreement theirs = Agreement::kNo;  ///< WILL of the client, DO of us
-  };
-
-  [[nodiscard]] bool has_com_port() const noexcept;
   void set_control(std::uint8_t value, Answer& answer) noexcept;
   static void settle(ComPortCode code, std::uint8_t value, std::uint8_t& setting,
                      std::uint8_t least, std::uint8_t most, Answer& answer) noexcept;
 
-  std::array<Directions, 3> options_{
-      Directions{Option::kBinary}, {Option::kSuppressGoAhead}, {Option::kComPort}};
+  Agreements agreements_;
   ComPortSettings settings_;
   std::uint8_t modem_mask_ = 255;  ///< RFC 2217: everything is told unless a client says otherwise
   bool is_suspended_ = false;
+};
+
+/// Asks a server for a port that is set in a certain way, without flow control and with DTR and RTS
+/// on, and waits for its word on each of these.
+class ComPortClient {
+ public:
+  using Request = BoundedBytes<64>;
+
+  explicit ComPortClient(const ComPortSettings& wanted) noexcept : wanted_{wanted} {}
+
+  /// BINARY and SGA for both directions, and COM-PORT.
+  [[nodiscard]] Request begin() noexcept;
+  [[nodiscard]] Request on(Negotiation negotiation) noexcept;
+  void on(const Subnegotiation& answer) noexcept;
+
+  /// Everything was acknowledged.
+  [[nodiscard]] bool is_ready() const noexcept { return asked_ && missing_ == 0 && !refused_; }
+  /// The server has no such option.
+  [[nodiscard]] bool is_no_port() const noexcept { return agreements_.is_com_port_refused(); }
+  /// The first setting that it answered with another value, and that value.
+  struct Refused {
+    ComPortCode code{};
+    std::uint32_t value{};
+  };
+  [[nodiscard]] const std::optional<Refused>& refused() const noexcept { return refused_; }
+
+ private:
+  void expect(ComPortCode code, std::uint32_t wanted, std::uint32_t said) noexcept;
+
+  ComPortSettings wanted_;
+  Agreements agreements_;
+  bool asked_ = false;
+  unsigned missing_ = 0;  ///< answers, a bit for each code
+  std::optional<Refused> refused_;
 };
 
 }  // namespace armjig::telnet

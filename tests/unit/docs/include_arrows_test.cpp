@@ -33,7 +33,7 @@ constexpr Room kRooms[] = {
     {"harness/urdf", "harness/core harness/files harness/arm"},
     {"harness/config", "harness/core harness/files"},
     {"harness/compare", "harness/core harness/wire harness/files harness/capture harness/config"},
-    {"harness/link", "harness/core"},
+    {"harness/link", "harness/core harness/wire"},
     {"harness/timing", "harness/core"},
     {"harness/motion", "harness/core harness/wire harness/arm"},
     {"harness/report", "harness/core"},
