@@ -48,7 +48,7 @@ ANSWERS = [
     (["emulate", ""], ["demo", "kinovazed", "morap", "parol6"]),
     (["conformance", "mutants", "d"], ["demo"]),
     (["watch", "morap", "--target", ""],
-     ["emulated:", "emulated:?", "i2c-tiny-usb:", "i2c:", "pty:", "serial:", "tcp:", "usb:"]),
+     ["emulated:", "emulated:?", "i2c-tiny-usb:", "i2c:", "pty:", "rfc2217:", "serial:", "tcp:", "usb:"]),
     (["conformance", "parol6", "--target", "emulated:?profile="],
      ["emulated:?profile=documented", "emulated:?profile=firmware"]),
     (["conformance", "parol6", "--target", "emulated:?crc=d4&es"], ["emulated:?crc=d4&estop="]),
