@@ -99,8 +99,8 @@ class Rfc2217Stream final : public StreamAround {
                              const SerialLine& line) {
     switch (refused.code) {
       case telnet::ComPortCode::kBaudRate:
-        return fmt::format("its port does not take {} baud but {}; write ,BAUD behind it",
-                           line.baud, refused.value);
+        return fmt::format("its port does not take {} baud but {}; write ,BAUD after it", line.baud,
+                           refused.value);
       case telnet::ComPortCode::kParity:
         return fmt::format("its port does not take {} parity", to_string(line.parity));
       default:
@@ -148,7 +148,8 @@ Outcome<std::unique_ptr<StreamPort>> speak_rfc2217(std::unique_ptr<StreamPort> c
 Outcome<std::unique_ptr<StreamPort>> open_rfc2217(std::string_view address, SerialLine usual) {
   const auto target = fmt::format("rfc2217:{}", address);
   const auto place = parse_serial_address(address, usual);
-  auto connection = place.and_then([](const SerialAddress& at) { return open_tcp_stream(at.path); });
+  auto connection =
+      place.and_then([](const SerialAddress& at) { return open_tcp_stream(at.path); });
   if (connection) return speak_rfc2217(*std::move(connection), place->line, target);
   const auto& error = connection.error();
   return problem(error.code, target,
