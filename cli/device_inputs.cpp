@@ -35,7 +35,7 @@ std::string_view next_word(std::string_view& line) noexcept {
   return word;
 }
 
-void tell(std::string_view text) { fmt::print(stderr, "armjig: {}\n", text); }
+void tell_line(std::string_view text) { fmt::print(stderr, "armjig: {}\n", text); }
 
 }  // namespace
 
@@ -60,7 +60,8 @@ void DeviceInputs::read(const std::stop_token& stop) {
       obey(std::string_view{text_}.substr(0, end));
       text_.erase(0, end + 1);
     }
-    if (text_.size() > kLongestInput) return tell("standard input has no lines; it is left alone");
+    if (text_.size() > kLongestInput)
+      return tell_line("standard input has no lines; it is left alone");
   }
 }
 
@@ -69,17 +70,17 @@ void DeviceInputs::obey(std::string_view line) {
   const auto said = next_word(line);
   if (name.empty() || name.starts_with('#')) return;
   if (name == "help") {
-    for (const auto& input : inputs_) tell(fmt::format("{:<21} {}", input.name, input.values));
+    for (const auto& input : inputs_) tell_line(fmt::format("{:<21} {}", input.name, input.values));
     return;
   }
   const auto value = whole_text_as<std::int64_t>(said);
   if (!value || !next_word(line).empty()) {
-    return tell(fmt::format("'{}': write NAME NUMBER; 'help' lists the names", name));
+    return tell_line(fmt::format("'{}': write NAME NUMBER; 'help' lists the names", name));
   }
   set_(std::string{name}, *value, [name = std::string{name}, value](bool is_taken) {
-    tell(is_taken ? fmt::format("{} is {}", name, *value)
-                  : fmt::format("there is no input '{}' here that takes {}; 'help' lists them",
-                                name, *value));
+    tell_line(is_taken ? fmt::format("{} is {}", name, *value)
+                       : fmt::format("there is no input '{}' here that takes {}; 'help' lists them",
+                                     name, *value));
   });
 }
 

@@ -525,8 +525,9 @@ Exit latency(Devices devices, const LatencyOptions& options) {
 
   const bool is_one = options.sweep.empty();
   const auto result = is_one ? report_of(runs.front()) : report_of(runs);
-  const auto& [json, html, log] = *files;
-  if (json != nullptr) json->put(is_one ? to_latency_json(runs.front()) : to_latency_json(runs));
+  const auto& [object, html, log] = *files;
+  if (object != nullptr)
+    object->put(is_one ? to_latency_json(runs.front()) : to_latency_json(runs));
   if (html != nullptr) html->put(to_html(result));
   if (log != nullptr) log->put(to_latency_log(runs.front()));
   fmt::print("{}", to_text(result));

@@ -8,10 +8,10 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 volatile std::sig_atomic_t ended = 0;
-volatile std::sig_atomic_t last = 0;  // its number
+volatile std::sig_atomic_t last_number = 0;
 
 extern "C" void on_signal(int number) {
-  last = number;
+  last_number = number;
   if (number == SIGINT) {
     interrupted = 1;
   } else {
@@ -24,7 +24,7 @@ extern "C" void on_signal(int number) {
 Signals::Signals() {
   interrupted = 0;
   ended = 0;
-  last = 0;
+  last_number = 0;
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     struct sigaction action{};
     action.sa_handler = kSignals[i] == SIGTSTP ? SIG_IGN : on_signal;
@@ -44,8 +44,8 @@ bool Signals::take_interrupt() noexcept {
 
 bool Signals::must_end() const noexcept { return ended != 0; }
 
-bool Signals::has_come() const noexcept { return last != 0; }
+bool Signals::has_come() const noexcept { return last_number != 0; }
 
-Exit Signals::exit() const noexcept { return static_cast<Exit>(128 + last); }
+Exit Signals::exit() const noexcept { return static_cast<Exit>(128 + last_number); }
 
 }  // namespace armjig::cli

@@ -76,9 +76,9 @@ Exit plan(const PlanOptions& options) {
     return Exit::kUsage;
   }
   const auto& file = options.script.file;
-  const auto& [csv, json, html, capture] = *files;
+  const auto& [csv, object, html, capture] = *files;
   if (csv) csv->put(to_csv(*program, *schedule));
-  if (json) json->put(to_json(*program, *schedule, file));
+  if (object) object->put(to_json(*program, *schedule, file));
   if (html) html->put(to_html(to_report(*program, *schedule, file)));
   if (capture) capture->put(as_capture(to_trace(*schedule, file), *format));
   const bool has_table = std::ranges::none_of(

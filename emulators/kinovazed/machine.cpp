@@ -53,12 +53,12 @@ constexpr decltype(Machine::arm) kArmRows{
 };
 
 /// kinovazed.beat.values. In the order of `State`.
-constexpr decltype(Machine::flags) kFlags{
+constexpr decltype(Machine::flags) kFlagsOfStates{
     beat::kEmergencyStop, 0, 0, beat::kIdle,           0,
     beat::kRetracted,     0, 0, beat::kInJoystickMode, beat::kRunningObjective,
     beat::kFreezed};
 
-constexpr Machine kShipped{kCommands, kArmRows, kFlags};
+constexpr Machine kShipped{kCommands, kArmRows, kFlagsOfStates};
 
 }  // namespace
 

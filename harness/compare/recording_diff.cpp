@@ -17,7 +17,7 @@
 namespace armjig {
 namespace {
 
-using Messages = std::span<const RecordedMessage>;
+using Lane = std::span<const RecordedMessage>;
 using Pair = std::pair<std::size_t, std::size_t>;  ///< places in the two recordings
 
 std::string note_of(const CaptureRecord& record) {
@@ -50,9 +50,9 @@ std::vector<std::byte> rest_of(Bytes bytes, const std::vector<Message>& messages
 }
 
 /// Compares messages of one lane under the rules.
-class Judge {
+class Likeness {
  public:
-  explicit Judge(const ComparisonRules& rules) : rules_{rules} {}
+  explicit Likeness(const ComparisonRules& rules) : rules_{rules} {}
 
   [[nodiscard]] bool is_in_time(const RecordedMessage& one, const RecordedMessage& other) const {
     return std::chrono::abs(one.message.time - other.message.time) <= rules_.time_tolerance;
@@ -229,7 +229,7 @@ class Alignment {
 /// One lane of both recordings.
 class LaneDiff {
  public:
-  LaneDiff(Messages before, Messages after, const Judge& judge)
+  LaneDiff(Lane before, Lane after, const Likeness& judge)
       : before_{before}, after_{after}, judge_{judge} {}
 
   [[nodiscard]] std::vector<RecordingDifference> run() {
@@ -290,9 +290,9 @@ class LaneDiff {
     }
   }
 
-  Messages before_;
-  Messages after_;
-  const Judge& judge_;
+  Lane before_;
+  Lane after_;
+  const Likeness& judge_;
   std::vector<RecordingDifference> found_;
 };
 
@@ -322,9 +322,9 @@ void find_moved(std::vector<RecordingDifference>& found) {
   });
 }
 
-Messages lane_of(const RecordedMessages& recording, const std::string& name) {
+Lane lane_of(const RecordedMessages& recording, const std::string& name) {
   const auto found = recording.lanes().find(name);
-  return found == recording.lanes().end() ? Messages{} : Messages{found->second};
+  return found == recording.lanes().end() ? Lane{} : Lane{found->second};
 }
 
 }  // namespace
@@ -402,7 +402,7 @@ std::string_view to_string(Change change) noexcept {
 
 std::vector<RecordingDifference> diff(const RecordedMessages& before, const RecordedMessages& after,
                                       const ComparisonRules& rules) {
-  const Judge judge{rules};
+  const Likeness judge{rules};
   std::set<std::string> names;
   for (const auto* const recording : {&before, &after}) {
     for (const auto& [name, messages] : recording->lanes()) names.insert(name);

@@ -229,15 +229,15 @@ std::string SessionSummary::to_text() const {
 }
 
 std::string SessionSummary::to_json() const {
-  using Json = nlohmann::ordered_json;
-  Json json{{"schema", "armjig.session/1"},
-            {"seconds", seconds(end_.time_since_epoch())},
-            {"records", records_},
-            {"events", events_},
-            {"conversations", conversations_}};
-  json["links"] = Json::array();
+  using Members = nlohmann::ordered_json;
+  Members json{{"schema", "armjig.session/1"},
+               {"seconds", seconds(end_.time_since_epoch())},
+               {"records", records_},
+               {"events", events_},
+               {"conversations", conversations_}};
+  json["links"] = Members::array();
   for (const auto& [name, link] : links_) {
-    Json entry{{"name", name}, {"device", link.device}, {"kind", to_string(link.kind)}};
+    Members entry{{"name", name}, {"device", link.device}, {"kind", to_string(link.kind)}};
     for (const auto direction : {Direction::kToDevice, Direction::kFromDevice}) {
       const auto& lane = link.lanes[index_of(direction)];
       entry[std::string{to_string(direction)}] = {
@@ -252,12 +252,12 @@ std::string SessionSummary::to_json() const {
                             {"max_ms", milliseconds(trips.max())}};
     json["links"].push_back(std::move(entry));
   }
-  json["messages"] = Json::array();
+  json["messages"] = Members::array();
   for (const auto& [name, count] : messages_) {
     json["messages"].push_back(
         {{"direction", to_string(name.first)}, {"name", name.second}, {"count", count.count}});
   }
-  json["moved"] = Json::array();
+  json["moved"] = Members::array();
   for (const auto& [name, value] : values_) {
     if (is_state(*value.field) || value.changes == 0) continue;
     json["moved"].push_back({{"field", name},
@@ -267,11 +267,11 @@ std::string SessionSummary::to_json() const {
                              {"least", number_of(*value.field, value.least)},
                              {"most", number_of(*value.field, value.most)}});
   }
-  json["states"] = Json::array();
+  json["states"] = Members::array();
   for (const auto& change : changes_) {
     json["states"].push_back({{"t_us", microseconds(change.time)}, {"change", change.text}});
   }
-  json["findings"] = Json::array();
+  json["findings"] = Members::array();
   for (const auto& [what, count] : findings_) {
     json["findings"].push_back({{"what", what}, {"count", count}});
   }

@@ -6,6 +6,7 @@
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 mkdir -p build/log
 jobs=$(nproc)
+slots=$((jobs + 1))  # of tests at a time: many of them wait
 failure_code=1  # of a failed step
 # For every call of CMake: warnings are errors in CI.
 warnings=-DARMJIG_WERROR=$([[ ${CI:-} == true ]] && echo ON || echo OFF)

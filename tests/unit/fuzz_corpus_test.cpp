@@ -46,9 +46,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Target = int (*)(const std::uint8_t*, std::size_t);
+using FuzzTarget = int (*)(const std::uint8_t*, std::size_t);
 
-void run_corpus(Target target, const char* name) {
+void run_corpus(FuzzTarget target, const char* name) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator{fs::path{source_dir()} / "fuzz/corpus" / name}) {
     files.push_back(entry.path());

@@ -12,7 +12,7 @@ using enum State;
 constexpr Duration kLater = 6s;
 
 template <State state>
-void estop(ServerBench& server) {
+void estop_quietly(ServerBench& server) {
   enter(server, state);
   server.accept("EStop");
   server.expect_quiet(kLater);
@@ -100,25 +100,25 @@ constexpr Clause kInterruptClauses[] = {
     must("kinovazed.interrupt.estop-initializing",
          "EStop ends initializing, and Initialized never comes.",
          "document; server, transcript T12"),
-    in(kInitializing, "Nothing for 6 s, and beat 3.", on<estop<kInitializing>>),
+    in(kInitializing, "Nothing for 6 s, and beat 3.", on<estop_quietly<kInitializing>>),
 
     must("kinovazed.interrupt.estop-retracting",
          "EStop ends retracting, and Retracted never comes.", "document; server, transcript T53"),
-    in(kRetracting, "Nothing for 6 s, and beat 3.", on<estop<kRetracting>>),
+    in(kRetracting, "Nothing for 6 s, and beat 3.", on<estop_quietly<kRetracting>>),
 
     must("kinovazed.interrupt.estop-unfolding", "EStop ends unfolding, and Unfolded never comes.",
          "document; server; reference 6.5"),
-    in(kUnfolding, "Nothing for 6 s, and beat 3.", on<estop<kUnfolding>>),
+    in(kUnfolding, "Nothing for 6 s, and beat 3.", on<estop_quietly<kUnfolding>>),
 
     must("kinovazed.interrupt.estop-setting-mode",
          "EStop ends a change of mode, and JoystickModeSet never comes.",
          "document; server, recording interrupt-setting-mode-by-estop"),
-    in(kSettingMode, "Nothing for 6 s, and beat 3.", on<estop<kSettingMode>>),
+    in(kSettingMode, "Nothing for 6 s, and beat 3.", on<estop_quietly<kSettingMode>>),
 
     must("kinovazed.interrupt.estop-objective",
          "EStop ends an objective, and ObjectiveDone never comes.",
          "document; server, recording interrupt-objective-by-estop"),
-    in(kRunningSequence, "Nothing for 6 s, and beat 3.", on<estop<kRunningSequence>>),
+    in(kRunningSequence, "Nothing for 6 s, and beat 3.", on<estop_quietly<kRunningSequence>>),
 
     must("kinovazed.interrupt.late-mode",
          "The end of a change of mode that EStop ended is not told after the next Initialize "

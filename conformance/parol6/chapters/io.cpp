@@ -46,7 +46,7 @@ void expect_jog(BoardBench& board, std::string_view what) {
   expect_speed(board, run(board, jog(4, 500), 100ms), 4, 500);
 }
 
-void expect_no_jog(BoardBench& board, std::string_view what) {
+void expect_jog_refused(BoardBench& board, std::string_view what) {
   board.about(std::string{what});
   expect_still(board, jog(4, 500), 100ms);
 }
@@ -230,7 +230,7 @@ constexpr Clause kIoClauses[] = {
          [](BoardBench& board) {
            press_while_jogging(board);
            board.pause(BoardBench::kPassTime);
-           expect_no_jog(board, "a jog with the emergency stop pressed");
+           expect_jog_refused(board, "a jog with the emergency stop pressed");
            release(board);
          }),
 
@@ -256,7 +256,7 @@ constexpr Clause kIoClauses[] = {
            board.spoil();
            press(board);
            board.act(with_code(kEnable));
-           expect_no_jog(board, "a jog after enable, the emergency stop being pressed");
+           expect_jog_refused(board, "a jog after enable, the emergency stop being pressed");
            release(board);
          }),
 
@@ -299,7 +299,7 @@ constexpr Clause kIoClauses[] = {
            press(board);
            board.act(idle());
            release(board);
-           expect_no_jog(board, "a jog after the emergency stop was released");
+           expect_jog_refused(board, "a jog after the emergency stop was released");
            board.act(with_code(kEnable));
            expect_jog(board, "a jog after enable");
          }),

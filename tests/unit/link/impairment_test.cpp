@@ -28,7 +28,7 @@ Impairment parsed(std::string_view text) {
 }
 
 /// The line that a user reads.
-std::string refusal(std::string_view text) {
+std::string refused_by_line(std::string_view text) {
   const auto impairment = parse_impairment(text);
   return impairment ? "accepted " + to_string(*impairment) : describe(impairment.error());
 }
@@ -176,18 +176,18 @@ TEST(ParseImpairment, RefusesEachMistakeInOneLineThatSaysWhatToDo) {
       {"loss=1%,loss=2%", "impairment 'loss=2%': loss is given twice: leave one out"},
       {"in.loss=1%,in.loss=1%", "impairment 'in.loss=1%': loss is given twice: leave one out"},
   };
-  for (const auto& [text, line] : mistakes) EXPECT_EQ(refusal(text), line);
+  for (const auto& [text, line] : mistakes) EXPECT_EQ(refused_by_line(text), line);
 }
 
 TEST(ParseImpairment, NamesTheOptionsToWhomItRefusesOne) {
-  EXPECT_EQ(refusal("los=1%"),
+  EXPECT_EQ(refused_by_line("los=1%"),
             "impairment 'los=1%': no such option; did you mean 'loss'? known: chunk, bit-errors, "
             "loss, double, reorder, "
             "split, merge, delay, bandwidth, stall, disconnect, disconnect-after, seed");
 }
 
 TEST(ParseImpairment, NamesTheDirectionsToWhomItRefusesOne) {
-  EXPECT_EQ(refusal("tx.loss=1%"),
+  EXPECT_EQ(refused_by_line("tx.loss=1%"),
             "impairment 'tx.loss=1%': no such option; the directions are out. (to the device) and "
             "in. (from it)");
 }
@@ -196,7 +196,8 @@ TEST(ParseImpairment, RefusesEveryBeginningOfATextWithoutCrashing) {
   constexpr std::string_view kText =
       "stall=25%:exponential(1s),in.delay=uniform(100us,1.5ms),seed=9";
   for (std::size_t size = 0; size < kText.size(); ++size) {
-    EXPECT_THAT(refusal(kText.substr(0, size)), StartsWith(size == 25 || size == 62 ? "acc" : ""));
+    EXPECT_THAT(refused_by_line(kText.substr(0, size)),
+                StartsWith(size == 25 || size == 62 ? "acc" : ""));
   }
 }
 

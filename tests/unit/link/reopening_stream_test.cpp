@@ -40,20 +40,20 @@ std::unique_ptr<StreamPort> port(Script script) {
   return std::make_unique<ScriptedPort>(std::move(script));
 }
 
-std::byte byte;
+std::byte read_byte;
 
 TEST(ReopeningStream, PassesOnWhatComesWhileTheDeviceIsThere) {
   ReopeningStream stream{port({{3}}), [] { return port({{0}}); }};
   EXPECT_TRUE(stream.write({}));
-  EXPECT_EQ(stream.read({&byte, 1}, stream.now() + 1s), 3U);
+  EXPECT_EQ(stream.read({&read_byte, 1}, stream.now() + 1s), 3U);
   EXPECT_EQ(stream.reopened(), 0U);
 }
 
 TEST(ReopeningStream, OpensADeviceThatHasGoneAtTheNextRead) {
   ReopeningStream stream{port({{1, gone()}}), [] { return port({{7}}); }};
-  EXPECT_EQ(stream.read({&byte, 1}, stream.now()), 1U);
-  EXPECT_EQ(stream.read({&byte, 1}, stream.now()), 0U) << "that it has gone is no error";
-  EXPECT_EQ(stream.read({&byte, 1}, stream.now() + 1h), 7U);
+  EXPECT_EQ(stream.read({&read_byte, 1}, stream.now()), 1U);
+  EXPECT_EQ(stream.read({&read_byte, 1}, stream.now()), 0U) << "that it has gone is no error";
+  EXPECT_EQ(stream.read({&read_byte, 1}, stream.now() + 1h), 7U);
   EXPECT_EQ(stream.reopened(), 1U);
 }
 
@@ -70,7 +70,7 @@ TEST(ReopeningStream, TriesTwiceASecondAndKeepsThePaceOfItsReader) {
                            ++tries;
                            return problem(ErrorCode::kNotFound, "board", "plug it in");
                          }};
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(stream.read({&byte, 1}, stream.now()), 0U);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(stream.read({&read_byte, 1}, stream.now()), 0U);
   EXPECT_EQ(tries, 1);
 }
 
@@ -78,7 +78,7 @@ TEST(ReopeningStream, GivesTheDeviceAsMuchTimeAsItIsGiven) {
   auto inner = std::make_unique<ScriptedPort>(Script{{0}});
   const auto& seen = *inner;
   ReopeningStream stream{std::move(inner), [] { return port({{0}}); }};
-  ASSERT_TRUE(stream.read({&byte, 1}, stream.now() + 1h));
+  ASSERT_TRUE(stream.read({&read_byte, 1}, stream.now() + 1h));
   EXPECT_LE(seen.last_deadline, at(1000s + 1h));
   EXPECT_GT(seen.last_deadline, at(1000s + 59min));
 }
@@ -87,7 +87,7 @@ TEST(ReopeningStream, OtherErrorsRemainErrors) {
   ReopeningStream stream{port({{fail(ErrorCode::kSystem)}, fail(ErrorCode::kTimedOut)}),
                          [] { return port({{0}}); }};
   EXPECT_EQ(stream.write({}).error().code, ErrorCode::kTimedOut);
-  EXPECT_EQ(stream.read({&byte, 1}, stream.now()).error().code, ErrorCode::kSystem);
+  EXPECT_EQ(stream.read({&read_byte, 1}, stream.now()).error().code, ErrorCode::kSystem);
 }
 
 }  // namespace

@@ -192,10 +192,10 @@ TEST(CommanderSchedule, P4SpeedAndAcceleration) {
 
 TEST(CommanderSchedule, P5AllJointsFollowTheLongest) {
   const CommanderMove move{"MoveJoint(0,-60,200,30,0,90,v=50,a=50)"};
-  constexpr std::array kPositions{0, -21333, 64337, 2132, 0, 16001};
+  constexpr std::array kPlaces{0, -21333, 64337, 2132, 0, 16001};
   constexpr std::array kCruises{3300, 3437, 2073, 687, 0, 5156};
   for (std::size_t j = 1; j <= 6; ++j) {
-    EXPECT_EQ(move.at(329, j).position, kPositions[j - 1]) << j;
+    EXPECT_EQ(move.at(329, j).position, kPlaces[j - 1]) << j;
     EXPECT_EQ(std::abs(move.at(165, j).speed), kCruises[j - 1]) << j;
   }
 }

@@ -22,7 +22,7 @@ using testing::Each;
 using testing::ElementsAre;
 using namespace std::chrono_literals;
 
-constexpr Command kUnknown{42};
+constexpr Command kUndefined{42};
 
 Desk desk_with(const BoardProfile& profile, const Plant& plant = standard_plant()) {
   Desk desk{Board{plant, {}, profile}};
@@ -92,7 +92,7 @@ TEST(DocumentedBoard, LosesNoGoodFrameBehindGarbage) {
 TEST(DocumentedBoard, GivesEachFrameOfABurstAPass) {
   auto desk = documented_desk();
   const auto answers = desk.send(joined(as_vector(encode(command(Command::kJog, {1000}))),
-                                        as_vector(encode(command(kUnknown)))));
+                                        as_vector(encode(command(kUndefined)))));
   EXPECT_EQ(answers.size(), 2U);
   EXPECT_EQ(counters(desk.board)[0], 1);
 }
@@ -154,7 +154,7 @@ TEST(DocumentedBoard, HomesOnceWhileHomeIsHeld) {
 }
 
 TEST(DocumentedBoard, HomesAgainAfterAnotherCode) {
-  for (const auto code : {Command::kIdle, kUnknown, Command::kEnable}) {
+  for (const auto code : {Command::kIdle, kUndefined, Command::kEnable}) {
     auto desk = documented_desk();
     desk.hold(command(Command::kHome), 33s);
     desk.hold(command(code), 20ms);
