@@ -34,6 +34,7 @@ using Action = std::function<Exit()>;
 /// what it does.
 using AddCommand = void (*)(CLI::App& app, Devices devices, Action& action);
 
+void add_captures(CLI::App& app, Devices devices, Action& action);
 void add_completion(CLI::App& app, Devices devices, Action& action);
 void add_conformance(CLI::App& app, Devices devices, Action& action);
 void add_console(CLI::App& app, Devices devices, Action& action);

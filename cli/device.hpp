@@ -18,8 +18,10 @@
 #include "emulators/memory/hosted.hpp"
 #include "emulators/memory/in_memory.hpp"
 #include "emulators/memory/serial_line.hpp"
+#include "emulators/replay/on_port.hpp"
 #include "emulators/replay/replay.hpp"
 #include "emulators/sessions/sessions.hpp"
+#include "harness/capture/trace.hpp"
 #include "harness/config/option_file.hpp"
 #include "harness/console/device_console.hpp"
 #include "harness/console/watched.hpp"
@@ -31,6 +33,7 @@
 #include "harness/rig/real_target.hpp"
 #include "harness/rig/rig.hpp"
 #include "harness/rig/stream_link.hpp"
+#include "harness/rig/target.hpp"
 #include "harness/rig/wiring.hpp"
 #include "harness/wire/dissection.hpp"
 
@@ -46,6 +49,9 @@ struct OnPort {
   /// The emulated device. Problems: `kUnknownOption`, `kBadValue`, those of files it names.
   Outcome<std::unique_ptr<Hosted>> (*emulate)(const DeviceOptions& options,
                                               const std::string& where){};
+  /// One like that of a recording, as its header describes it; nullptr: no header does. Problems:
+  /// `kMalformed`.
+  Outcome<std::unique_ptr<Hosted>> (*set_up)(const Trace& recording){};
   Outcome<std::unique_ptr<Bench>> (*make_bench)(Rig<Port> rig, const RigOptions& how){};
   Outcome<std::unique_ptr<DeviceConsole>> (*open_console)(Rig<Port> rig, const std::string& target,
                                                           Say say){};
@@ -94,12 +100,37 @@ struct Device {
   std::vector<AddOwnCommand> commands{};
 };
 
-/// The emulated device with all that its entry says of its link. Problems as for `OnPort::emulate`.
+/// The option that every emulated device has: `like=FILE`, in place of all others.
+inline constexpr std::string_view kLike = "like";
+
+/// An emulated device like that of a recording: with the options that its header has, if it is of
+/// `--capture`, or as the header describes it. Problems: `kBadValue`: it cannot be read;
+/// `kUnsupported`: it does not say; those of `OnPort::set_up`.
+template <class Kind>
+[[nodiscard]] Outcome<std::unique_ptr<typename Kind::Hosted>> emulate_like(
+    const Kind& kind, const std::string& path) {
+  const auto recording = read_trace(path);
+  if (!recording) {
+    return problem(ErrorCode::kBadValue, "like=" + path, describe(recording.error()));
+  }
+  if (kind.set_up != nullptr && !is_of_capture(recording->header)) return kind.set_up(*recording);
+  return emulated_target_of(*recording).and_then(parse_target).and_then([&](const Target& target) {
+    return kind.emulate(target.options, target.text);
+  });
+}
+
+/// The emulated device with all that its entry says of its link. Problems as for `OnPort::emulate`
+/// and `emulate_like`.
 template <class Kind>
 [[nodiscard]] Outcome<std::unique_ptr<typename Kind::Hosted>> emulate(const Kind& kind,
                                                                       const DeviceOptions& options,
                                                                       const std::string& where) {
-  auto hosted = kind.emulate(options, where);
+  const auto like = options.find(kLike);
+  if (like != options.end() && options.size() > 1) {
+    return problem(ErrorCode::kBadValue, where, "like=FILE takes the place of all other options");
+  }
+  auto hosted =
+      like == options.end() ? kind.emulate(options, where) : emulate_like(kind, like->second);
   if constexpr (std::is_same_v<Kind, OnStream>) {
     if (hosted && kind.line) return put_on_line(*std::move(hosted), rate_of(*kind.line));
   }
@@ -117,6 +148,12 @@ template <auto make>
   } else {
     return make(options, where, option_files()).map(host);
   }
+}
+
+/// The same of `OnPort::set_up`, if there is a function that makes it of a recording.
+template <auto set_up>
+[[nodiscard]] auto hosted_like(const Trace& recording) {
+  return set_up(recording).map([](auto device) { return make_hosted(std::move(device)); });
 }
 
 /// The parts that an entry must have and lacks, by their names; nothing if it is complete.

@@ -91,22 +91,6 @@ std::string summary_of(const Differences& found) {
   return text;
 }
 
-void print_text(const Differences& found) {
-  constexpr std::size_t kMostShown = 100;
-  for (const auto& one : std::span{found}.first(std::min(found.size(), kMostShown))) {
-    fmt::print("{:>12} s {} {}\n", seconds_of(one.before != nullptr ? one.before : one.after),
-               to_string(one.change), wording::line(one.lane));
-    if (one.before != nullptr) fmt::print("  before {}\n", text_of(one.before));
-    if (one.after != nullptr) fmt::print("  after  {}\n", text_of(one.after));
-    for (const auto& what : one.what) fmt::print("    {}\n", wording::line(what));
-  }
-  if (found.size() > kMostShown) fmt::print("and {} more\n", found.size() - kMostShown);
-  for (const auto& [field, count] : by_field(found)) {
-    fmt::print("{:>8} times {}\n", count, wording::line(field));
-  }
-  fmt::print("{}\n", found.empty() ? "equal" : "different: " + summary_of(found));
-}
-
 void print_json(const Differences& found) {
   const auto message_of = [](const RecordedMessage& message) {
     auto json = message_object<Json>(message.message);
@@ -156,8 +140,32 @@ Report page_of(const Compared& compared, const Differences& found) {
 
 }  // namespace
 
+std::string describe(const Differences& found) {
+  constexpr std::size_t kMostShown = 100;
+  std::string text;
+  const auto add = std::back_inserter(text);
+  for (const auto& one : std::span{found}.first(std::min(found.size(), kMostShown))) {
+    fmt::format_to(add, "{:>12} s {} {}\n",
+                   seconds_of(one.before != nullptr ? one.before : one.after),
+                   to_string(one.change), wording::line(one.lane));
+    if (one.before != nullptr) fmt::format_to(add, "  before {}\n", text_of(one.before));
+    if (one.after != nullptr) fmt::format_to(add, "  after  {}\n", text_of(one.after));
+    for (const auto& what : one.what) fmt::format_to(add, "    {}\n", wording::line(what));
+  }
+  if (found.size() > kMostShown) fmt::format_to(add, "and {} more\n", found.size() - kMostShown);
+  for (const auto& [field, count] : by_field(found)) {
+    fmt::format_to(add, "{:>8} times {}\n", count, wording::line(field));
+  }
+  fmt::format_to(add, "{}\n", found.empty() ? "equal" : "different: " + summary_of(found));
+  return text;
+}
+
 Exit tell(const Differences& found, const Compared& compared, bool wants_json, const Output& html) {
-  wants_json ? print_json(found) : print_text(found);
+  if (wants_json) {
+    print_json(found);
+  } else {
+    fmt::print("{}", describe(found));
+  }
   if (html) html->put(to_html(page_of(compared, found)));
   if (compared.messages == 0) return Exit::kNothing;
   return found.empty() ? Exit::kPassed : Exit::kFindings;

@@ -33,8 +33,11 @@ struct Compared {
   std::size_t messages{};
 };
 
-/// On standard output the first differences with fields, a summary by field, and a verdict, or one
-/// JSON object; on the page, if there is one, both side by side. Answers the exit code.
+/// The first of them with fields, a summary by field, and a verdict: several lines.
+[[nodiscard]] std::string describe(const std::vector<RecordingDifference>& found);
+
+/// On standard output what `describe` says, or one JSON object; on the page, if there is one, both
+/// side by side. Answers the exit code.
 [[nodiscard]] Exit tell(const std::vector<RecordingDifference>& found, const Compared& compared,
                         bool wants_json, const Output& html);
 

@@ -4,13 +4,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <optional>
 #include <set>
-#include <thread>
 #include <utility>
 
+#include "conformance/in_parallel.hpp"
 #include "conformance/selection.hpp"
 #include "harness/core/version.hpp"
 #include "harness/rig/target.hpp"
@@ -83,18 +82,6 @@ class Trial {
   std::set<std::uint8_t> unreachable_;
   std::string obstacle_;
 };
-
-/// Calls `work` for 0 to `count` - 1 on several threads.
-template <class Work>
-void in_parallel(unsigned threads, std::size_t count, Work work) {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (auto i = next++; i < count; i = next++) work(i);
-  };
-  std::vector<std::jthread> others;
-  for (unsigned i = 1; i < threads; ++i) others.emplace_back(run);
-  run();
-}
 
 bool is_hinted(const Case& one, std::span<const SectionHints> hints, std::string_view section) {
   const auto found = std::ranges::find(hints, section, &SectionHints::section);

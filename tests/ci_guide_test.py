@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What docs/ci.md shows works, as far as it does without GitHub and GitLab.
 
-The workflow, the template and the test file are taken from the page and put beside the host program
+The workflow, the template, the scripts and the test file are taken from the page and put beside the host program
 of docs/spec/parol6.md. The shell commands of each job run with `sh -e`. Left out, by rule: steps with
 `uses`, commands that call apt-get, images and runners. A TARGET that is a serial port becomes an
 emulated board. Then the same with a wrong program and a wrong board, which every job has to notice.
@@ -88,6 +88,24 @@ class Project:
         assert all(is_report(self.folder / report) for report in reports), (job, self.said)
         return passed
 
+    def passes_captures(self):
+        """The script on a corpus, with its rules."""
+        return self.run(["sh", "-e", "captures.sh"], {"TARGET": "emulated:"}) and \
+            is_report(self.folder / "captures.xml")
+
+    def record_corpus(self):
+        (self.folder / "corpus").mkdir()
+        assert self.run(["armjig", "watch", "parol6", "--target", "emulated:", "--count", "20",
+                         "--capture", "corpus/look.jsonl"], {}), self.said
+
+    def spoil_corpus(self):
+        """In one answer a byte is another one."""
+        file = self.folder / "corpus/look.jsonl"
+        lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+        place = next(i for i, line in enumerate(lines) if "from_device" in line)
+        lines[place] = lines[place].replace("ffffff00", "ffffff01").replace("ffffff38", "ffffff37")
+        file.write_text("".join(lines), encoding="utf-8")
+
     def passes_pytest(self):
         return self.run(["python3", "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_host.py"],
                         {})
@@ -105,6 +123,10 @@ def main(armjig, root):
         for job in jobs:
             assert any(project.passes(job, "emulated:") for _ in range(TRIES)), (job, project.said)
         assert any(project.passes_pytest() for _ in range(TRIES)), project.said
+        project.record_corpus()
+        assert project.passes_captures(), project.said
+        project.spoil_corpus()
+        assert not project.passes_captures(), project.said
         (project.folder / "host.py").write_text(host.replace(*WRONG_PROGRAM))
         for job in jobs:
             assert not project.passes(job, WRONG_BOARD), (job, project.said)

@@ -19,6 +19,7 @@ cli::Device device() {
           .make_dissector = make_dissector,
           .port = cli::OnServer{{.make_judge = rig::make_judge,
                                  .emulate = cli::hosted<emulation::make>,
+                                 .set_up = cli::hosted_like<replay::set_up>,
                                  .make_bench = conformance::make_bench,
                                  .open_console = console::open,
                                  .watch = console::watch,
@@ -32,6 +33,7 @@ cli::Device device() {
           .replay = {.run = replay::replay,
                      .compare = replay::session_difference,
                      .write = replay::write,
+                     .touches_of = replay::touches_of,
                      .verify_table = replay::verify_matrix},
           .draw_session = sessions::draw,
           .dissection = dissection};

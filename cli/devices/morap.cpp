@@ -19,6 +19,7 @@ cli::Device device() {
           .make_dissector = make_dissector,
           .port = cli::OnBus{{.make_judge = rig::make_judge,
                               .emulate = cli::hosted<emulation::make>,
+                              .set_up = cli::hosted_like<replay::set_up>,
                               .make_bench = conformance::make_bench,
                               .open_console = console::open,
                               .watch = console::watch,
@@ -31,7 +32,8 @@ cli::Device device() {
           .program_check = programs::program_check(),
           .replay = {.run = replay::replay,
                      .run_plainly = replay::replay_plainly,
-                     .write = replay::write},
+                     .write = replay::write,
+                     .touches_of = replay::touches_of},
           .draw_session = sessions::draw,
           .dissection = dissection,
           .commands = {cli::add_i2c, cli::add_morap}};

@@ -19,6 +19,7 @@ cli::Device device() {
           .make_dissector = make_dissector,
           .port = cli::OnStream{{.make_judge = rig::make_judge,
                                  .emulate = cli::hosted<emulation::make>,
+                                 .set_up = cli::hosted_like<replay::set_up>,
                                  .make_bench = conformance::make_bench,
                                  .open_console = console::open,
                                  .watch = console::watch,

@@ -60,6 +60,17 @@ void Pen::press(Instant time, bool deploys, bool retracts) noexcept {
   retracts_ = retracts;
 }
 
+bool Pen::set_input(Instant time, std::string_view name, std::int64_t value) {
+  if (name == "deploy") {
+    press(time, value != 0, retracts_);
+  } else if (name == "retract") {
+    press(time, deploys_, value != 0);
+  } else {
+    return false;
+  }
+  return true;
+}
+
 bool Pen::lamp2() const noexcept {
   return std::abs(pen::kDeployedDegrees - degrees_) < std::abs(pen::kRetractedDegrees - degrees_);
 }

@@ -42,6 +42,10 @@ class Pen {
   /// Buttons deploy and retract without the bus; looked at every 50 ms, the first wins.
   void press(Instant time, bool deploys, bool retracts) noexcept;
 
+  /// What no bus can: `deploy` and `retract`, 1: that button is held, 0: let go. False: there is no
+  /// such thing.
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
+
   [[nodiscard]] int servo_degrees() const noexcept { return degrees_; }
   [[nodiscard]] bool lamp1() const noexcept { return lamp1_; }  ///< turns over with each command
   [[nodiscard]] bool lamp2() const noexcept;                    ///< nearer to deployed

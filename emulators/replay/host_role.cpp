@@ -77,7 +77,8 @@ class Clock {
 /// What all of them keep.
 class Playing {
  public:
-  Playing(Instant now, Records records, const PlayHow& how) : clock_{now, records, how.speed} {}
+  Playing(Instant now, Records records, const PlayHow& how)
+      : clock_{now, records, how.speed}, touches_of_{how.touches_of} {}
   [[nodiscard]] Played take() { return std::move(played_); }
 
  protected:
@@ -90,16 +91,14 @@ class Playing {
     like.bytes.assign(bytes.begin(), bytes.end());
     played_.actual.push_back(std::move(like));
   }
-  /// An input that was set by hand. Answers false if it is none.
-  bool touch(Endpoint& port, const OrderedJson& event) {
-    if (name_of_event(event) != "input") return false;
-    const auto name = text_of(event, "name");
-    if (!name.empty() && port.touch(name, number_of<std::int64_t>(event, "value", 0))) {
-      ++played_.sent;
-    } else {
-      leave_out("input");
+  /// What was done beside the link. Answers false if nothing of it can be done there.
+  bool touch(Endpoint& port, const KeptRecord& record) {
+    bool is_done = false;
+    for (const auto& [name, value] : touches_of(details_of(record))) {
+      if (port.touch(name, value)) is_done = true;
     }
-    return true;
+    if (is_done) ++played_.sent;
+    return is_done;
   }
   void leave_out(const std::string& what) { ++played_.left_out[what]; }
   void leave_out(const KeptRecord& record) {
@@ -109,24 +108,34 @@ class Playing {
 
   Clock clock_;
   Played played_;
+
+ private:
+  [[nodiscard]] DeviceTouches touches_of(const OrderedJson& event) const {
+    if (name_of_event(event) == "input" && event.contains("name")) {
+      return {{text_of(event, "name"), number_of<std::int64_t>(event, "value", 0)}};
+    }
+    return touches_of_ == nullptr ? DeviceTouches{} : touches_of_(event.dump());
+  }
+
+  DeviceTouches (*touches_of_)(std::string_view event);
 };
 
 class StreamPlaying : public Playing {
  public:
   StreamPlaying(StreamPort& port, Records records, const PlayHow& how)
-      : Playing{port.now(), records, how}, port_{port} {}
+      : Playing{port.now(), records, how}, port_{port}, lead_{how.lead} {}
 
   Result<void> play(const KeptRecord& record) {
     if (record.kind == LinkKind::kStream && record.direction == Direction::kFromDevice) {
       return expect(record);
     }
-    if (auto heard = listen_until(record.time); !heard) return heard;
+    if (auto heard = listen_until(record.time - lead_); !heard) return heard;
     if (record.kind == LinkKind::kStream) {
       ++played_.sent;
       return port_.write(record.bytes);
     }
     const bool is_event = record.kind == LinkKind::kEvents;
-    if (!is_event || !touch(port_, details_of(record))) leave_out(record);
+    if (!is_event || !touch(port_, record)) leave_out(record);
     return {};
   }
 
@@ -143,6 +152,7 @@ class StreamPlaying : public Playing {
 
  private:
   StreamPort& port_;
+  Duration lead_;
 };
 
 class ServerPlaying : public Playing {
@@ -225,7 +235,7 @@ class ServerPlaying : public Playing {
     if (is_end && disconnect(found->second, text)) {
       ++played_.sent;
       if (!found->second.is_open) played_.ends.emplace_back(id, record.time);
-    } else if (!touch(server_, event)) {
+    } else if (!touch(server_, record)) {
       leave_out(record);
     }
     return {};
@@ -304,7 +314,7 @@ class BusPlaying : public Playing {
       if (name_of_event(details) == "recover") {
         ++played_.sent;
         (void)port_.recover();
-      } else if (!touch(port_, details)) {
+      } else if (!touch(port_, record) && name_of_event(details) != "advance") {
         leave_out(record);
       }
       return {};

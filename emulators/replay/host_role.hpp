@@ -5,9 +5,11 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "emulators/replay/replay.hpp"
 #include "harness/capture/capture.hpp"
 #include "harness/link/bus_port.hpp"
 #include "harness/link/session_source.hpp"
@@ -41,7 +43,14 @@ struct KeptRecord {
 };
 
 struct PlayHow {
-  double speed = 1;     ///< 2: in half the time; what is kept has the times of the recording
+  double speed = 1;  ///< 2: in half the time; what is kept has the times of the recording
+  /// What lines beside the link mean (`Replay::touches_of`); nullptr: only `input` lines are
+  /// played.
+  DeviceTouches (*touches_of)(std::string_view event){};
+  /// On a stream, what the host sent leaves so much earlier: what was recorded of one that works in
+  /// passes was there when the device looked at that moment, and what `--capture` wrote came just
+  /// after it.
+  Duration lead{};
   Duration trailing{};  ///< listens so much longer than the recording lasts
 };
 

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "emulators/kinovazed/defects/defective_server.hpp"
 #include "emulators/kinovazed/server.hpp"
 #include "emulators/replay/kinovazed_rules.hpp"
 #include "emulators/replay/wrong_key.hpp"
@@ -106,6 +107,24 @@ Outcome<Recording> read_header(const Trace& trace) {
   return recording;
 }
 
+Server make_server(const Recording& recording, std::uint32_t late_repairs) {
+  ArmPort arm{BenchArm{recording.arm}};
+  if (recording.is_arm_missing) arm.unplug();
+  return Server{std::move(arm), {.late_repairs = late_repairs}};
+}
+
+/// The moment on the server's clock that is 0 in the recording: the server begins to listen 50 ms
+/// and one look at the arm after its last attempt to open it, and attempts are repeated.
+Instant start_of(const Recording& recording) {
+  constexpr Duration kOpening = pace::kOpen + 4 * 600us;
+  if (!recording.listening_since) return {};
+  auto listens = at(kOpening);
+  while (listens.time_since_epoch() < *recording.listening_since) {
+    listens += pace::kOpen + pace::kRetryAtStart;
+  }
+  return listens - *recording.listening_since;
+}
+
 /// One recording on its way through a server.
 class Player {
  public:
@@ -154,24 +173,6 @@ class Player {
   }
 
  private:
-  static Server make_server(const Recording& recording, std::uint32_t late_repairs) {
-    ArmPort arm{BenchArm{recording.arm}};
-    if (recording.is_arm_missing) arm.unplug();
-    return Server{std::move(arm), {.late_repairs = late_repairs}};
-  }
-
-  /// The moment on the server's clock that is 0 in the recording: the server begins to listen 50 ms
-  /// and one look at the arm after its last attempt to open it, and attempts are repeated.
-  static Instant start_of(const Recording& recording) {
-    constexpr Duration kOpening = pace::kOpen + 4 * 600us;
-    if (!recording.listening_since) return {};
-    auto listens = at(kOpening);
-    while (listens.time_since_epoch() < *recording.listening_since) {
-      listens += pace::kOpen + pace::kRetryAtStart;
-    }
-    return listens - *recording.listening_since;
-  }
-
   static std::string_view life_name(Server::Life life) {
     switch (life) {
       case Server::Life::kHung:
@@ -367,6 +368,39 @@ class Player {
 };
 
 }  // namespace
+
+Outcome<DefectiveServer> set_up(const Trace& recording) {
+  return read_header(recording).map([](const Recording& header) {
+    return DefectiveServer{
+        make_server(header, 0), {}, Instant{-start_of(header).time_since_epoch()}};
+  });
+}
+
+DeviceTouches touches_of(std::string_view event) {
+  const auto json = Json::parse(event, nullptr, /*allow_exceptions=*/false);
+  const auto text = [&json](const char* key) {
+    const auto value = json.value(key, Json{});
+    return value.is_string() ? value.get<std::string>() : std::string{};
+  };
+  const auto number = [&json](const char* key, double otherwise) {
+    const auto value = json.value(key, Json{});
+    return value.is_number() ? value.get<double>() : otherwise;
+  };
+  if (text("dir") != "arm") return {};
+  const auto what = text("event");
+  if (what == "plug") return {{"arm.plugged", 1}};
+  if (what == "unplug") return {{"arm.plugged", 0}};
+  if (what == "mode") return {{"arm.mode", std::llround(number("value", 0))}};
+  if (what == "current") return {{"arm.current", std::llround(number("value", 0) * 1000)}};
+  if (what == "fail" && number("skip", 0) == 0) {
+    return {{"arm.fail." + text("call"), std::llround(number("count", 1))}};
+  }
+  DeviceTouches touches;
+  if (what == "clear_failures") {
+    for (const auto& call : kArmCallNames) touches.push_back({fmt::format("arm.fail.{}", call), 0});
+  }
+  return touches;
+}
 
 Outcome<Replayed> replay(const Trace& trace) {
   const auto recording = read_header(trace);

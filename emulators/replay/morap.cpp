@@ -9,8 +9,10 @@
 #include <optional>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "emulators/i2c/bus.hpp"
+#include "emulators/morap/defects/defects.hpp"
 #include "emulators/morap/node.hpp"
 #include "emulators/morap/pen.hpp"
 #include "emulators/replay/wrong_key.hpp"
@@ -79,16 +81,7 @@ PlantParameters read_plant(Reader& reader, const Json& json) {
 /// The bus of a recording, and where on it the device with each address is.
 class Bench {
  public:
-  void attach(Reader& reader, const Json& json) {
-    const auto kind = json.value("kind", Json{});
-    if (kind == "pen") return attach_pen();
-    NodeSetup setup;
-    const auto eeprom = json.value("eeprom", Json::object());
-    const auto image = reader.bytes(eeprom, "words_le_hex");
-    if (image.size() != kEepromSize) return reader.complain("words_le_hex");
-    setup.eeprom = decode_eeprom(Bytes{image}.first<kEepromSize>());
-    const auto plant = json.value("plant", Json{});
-    if (plant.is_object()) setup.plant = read_plant(reader, plant);
+  void attach(const NodeSetup& setup) {
     const Node node{setup};
     nodes_[node.address()] = bus_.attach(node);
   }
@@ -124,28 +117,57 @@ void check_timing(Reader& reader, const Json& header) {
   reader.integer(bus, "stop_us", 10, 10);
 }
 
-Outcome<Bench> make_bench(const Trace& trace) {
-  const auto header = Json::parse(trace.header, nullptr, /*allow_exceptions=*/false);
-  Reader reader;
-  Bench bench;
-  check_timing(reader, header);
-  const auto nodes = header.value("nodes", Json{});
-  if (trace.device == "morap-pen") {
-    bench.attach_pen();
-  } else if (trace.device == "morap-node") {
-    bench.attach(reader, header);
-  } else if (!nodes.is_array()) {
-    reader.complain("nodes");
-  } else {
-    for (const auto& node : nodes) {
-      if (!node.is_object()) {
-        reader.complain("nodes");
-      } else {
-        bench.attach(reader, node);
-      }
+/// What is on the bus of a recording, in its order; none: a pen.
+using Setups = std::vector<std::optional<NodeSetup>>;
+
+NodeSetup read_node(Reader& reader, const Json& json) {
+  NodeSetup setup;
+  const auto eeprom = json.value("eeprom", Json::object());
+  const auto image = reader.bytes(eeprom, "words_le_hex");
+  if (image.size() != kEepromSize) {
+    reader.complain("words_le_hex");
+    return setup;
+  }
+  setup.eeprom = decode_eeprom(Bytes{image}.first<kEepromSize>());
+  const auto plant = json.value("plant", Json{});
+  if (plant.is_object()) setup.plant = read_plant(reader, plant);
+  return setup;
+}
+
+Setups read_nodes(Reader& reader, const Json& nodes) {
+  Setups setups;
+  if (!nodes.is_array()) reader.complain("nodes");
+  for (const auto& node : nodes) {
+    if (!node.is_object()) {
+      reader.complain("nodes");
+    } else if (node.value("kind", Json{}) == "pen") {
+      setups.emplace_back();
+    } else {
+      setups.emplace_back(read_node(reader, node));
     }
   }
+  return setups;
+}
+
+Outcome<Setups> read_header(const Trace& trace) {
+  const auto header = Json::parse(trace.header, nullptr, /*allow_exceptions=*/false);
+  Reader reader;
+  check_timing(reader, header);
+  Setups setups;
+  if (trace.device == "morap-pen") {
+    setups.emplace_back();
+  } else if (trace.device == "morap-node") {
+    setups.emplace_back(read_node(reader, header));
+  } else {
+    setups = read_nodes(reader, header.value("nodes", Json{}));
+  }
   if (!reader.wrong_key().empty()) return reader.refuse(trace);
+  return setups;
+}
+
+Bench make_bench(const Setups& setups) {
+  Bench bench;
+  for (const auto& setup : setups) setup ? bench.attach(*setup) : bench.attach_pen();
   return bench;
 }
 
@@ -273,12 +295,13 @@ class Operation {
 enum class Ticks : std::uint8_t { kSkipIdle, kEach };
 
 Outcome<Replayed> replay(const Trace& trace, Ticks ticks) {
-  auto bench = make_bench(trace);
-  if (!bench) return tl::unexpected{bench.error()};
+  const auto setups = read_header(trace);
+  if (!setups) return tl::unexpected{setups.error()};
+  auto bench = make_bench(*setups);
   Replayed replayed;
   for (const auto& event : trace.events) {
-    if (ticks == Ticks::kEach) bench->tick_until(event.time);
-    if (Operation{event, *bench}.run(replayed)) continue;
+    if (ticks == Ticks::kEach) bench.tick_until(event.time);
+    if (Operation{event, bench}.run(replayed)) continue;
     return problem(ErrorCode::kMalformed, fmt::format("{}:{}", trace.path, event.line),
                    "not a line that a morap recording can have");
   }
@@ -286,6 +309,30 @@ Outcome<Replayed> replay(const Trace& trace, Ticks ticks) {
 }
 
 }  // namespace
+
+Outcome<i2c::Bus> set_up(const Trace& recording) {
+  return read_header(recording).map([](const Setups& setups) {
+    i2c::Bus bus;
+    for (const auto& setup : setups) {
+      setup ? bus.attach(DefectiveNode{*setup, {}}) : bus.attach(Pen{});
+    }
+    return bus;
+  });
+}
+
+DeviceTouches touches_of(std::string_view event) {
+  const auto json = Json::parse(event, nullptr, /*allow_exceptions=*/false);
+  const auto what = json.value("op", std::string{});
+  const auto number = [&json](const char* key) {
+    const auto value = json.value(key, Json{});
+    return value.is_number_integer() ? value.get<std::int64_t>() : std::int64_t{};
+  };
+  if (what == "adc") return {{"adc", number("value")}};
+  if (what == "encoder") return {{"encoder", number("delta")}};
+  if (what == "restart") return {{"power", 1}};
+  if (what == "input") return {{"deploy", number("but1")}, {"retract", number("but2")}};
+  return {};
+}
 
 Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Ticks::kSkipIdle); }
 Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Ticks::kEach); }

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
+
+#include "emulators/i2c/bus.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/error.hpp"
 
 namespace armjig::morap::replay {
+
+/// The nodes and pens that the header of a recording names, on a fresh bus.
+[[nodiscard]] Outcome<i2c::Bus> set_up(const Trace& recording);
+
+/// As `Replay::touches_of`, of the shaft, the power and the buttons of the only device.
+[[nodiscard]] DeviceTouches touches_of(std::string_view event);
 
 /// Puts the nodes and pens that the header names on a fresh bus, drives it with the operations of
 /// the recording, and answers acknowledgements, bytes read and states of the pen. Bytes that the

@@ -259,6 +259,11 @@ Outcome<Replayed> replay_on(BusPort& port, const Trace& trace) {
   return replay_with(BusReplay{port}, trace);
 }
 
+bool is_of_capture(std::string_view header) {
+  const auto json = Json::parse(header, nullptr, /*allow_exceptions=*/false);
+  return json.is_object() && json.value("title", Json{}) == "capture";
+}
+
 Outcome<std::string> emulated_target_of(const Trace& trace) {
   const auto header = Json::parse(trace.header, nullptr, /*allow_exceptions=*/false);
   auto target = header.value("target", std::string{});

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "emulators/replay/replay.hpp"
 #include "harness/link/bus_port.hpp"
 #include "harness/link/session_source.hpp"
@@ -18,6 +21,9 @@ namespace armjig {
 [[nodiscard]] Outcome<Replayed> replay_on(SessionSource& server, const Trace& trace);
 /// Address and bytes that were refused are compared, too.
 [[nodiscard]] Outcome<Replayed> replay_on(BusPort& port, const Trace& trace);
+
+/// Whether `--capture` or `record` made the recording with that header.
+[[nodiscard]] bool is_of_capture(std::string_view header);
 
 /// What the device was, from the header of a recording: `emulated:?OPTIONS`. Problems:
 /// `kUnsupported` if it was not emulated, or nobody says.

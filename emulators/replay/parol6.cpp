@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -183,6 +184,13 @@ Outcome<Replayed> replay(const Trace& trace, Passes passes) {
 }
 
 }  // namespace
+
+Outcome<DefectiveArm> set_up(const Trace& recording) {
+  return read_header(recording).map([](const Recording& header) {
+    const ArmOptions arm{.plant = header.plant, .timing = header.timing, .gripper = std::nullopt};
+    return DefectiveArm{arm, {}};
+  });
+}
 
 Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Passes::kInClosedForm); }
 Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Passes::kEach); }

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emulators/parol6/defects/defects.hpp"
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/error.hpp"
 
 namespace armjig::parol6::replay {
+
+/// A board on the plant and the clocks that the header of a recording names, with nothing on its
+/// CAN.
+[[nodiscard]] Outcome<emulation::DefectiveArm> set_up(const Trace& recording);
 
 /// Drives a fresh board with the stimulus of a recording, on the plant and the clocks that its
 /// header names, and answers what the board sent. CAN frames are among it only if the recording has

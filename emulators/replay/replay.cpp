@@ -21,6 +21,15 @@ std::string write_event(std::string_view /*line*/, const TraceEvent& actual) {
                      actual.dir, id, to_hex(actual.bytes));
 }
 
+Trace stimulus_of(Trace trace) {
+  std::erase_if(trace.events, [](const TraceEvent& event) {
+    if (event.dir == "from_device" || event.dir == "can_from_device") return true;
+    // What ended by itself, as a server ends a connection.
+    return event.dir == "disconnect" && event.json.find(R"("device-)") != std::string::npos;
+  });
+  return trace;
+}
+
 Outcome<std::string> record(const Trace& stimulus, const Replay& replay) {
   return replay.run(stimulus).map([&](const Replayed& replayed) {
     std::map<std::size_t, const TraceEvent*> answers;

@@ -268,7 +268,9 @@ Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& pa
     for (fs::recursive_directory_iterator it{path, error}, end; !error && it != end;
          it.increment(error)) {
       std::error_code ignored;
-      if (it->path().extension() == ".jsonl" && it->is_regular_file(ignored)) {
+      const auto extension = it->path().extension();
+      const bool is_recording = extension == ".jsonl" || extension == ".pcapng";
+      if (is_recording && it->is_regular_file(ignored)) {
         files.push_back(it->path().string());
       }
     }

@@ -65,8 +65,8 @@ class TraceLines {
 /// The same from text in memory; `path` is for messages.
 [[nodiscard]] Outcome<Trace> parse_trace(std::string path, std::string_view text);
 
-/// The files named `*.jsonl` under each of `paths`, sorted within each; a path that is a file is
-/// taken whatever its name.
+/// The files named `*.jsonl` or `*.pcapng` under each of `paths`, sorted within each; a path that
+/// is a file is taken whatever its name.
 [[nodiscard]] Outcome<std::vector<std::string>> find_traces(const std::vector<std::string>& paths);
 
 /// What was acknowledged of a `write` or `read` on a bus: the byte with address and direction, then

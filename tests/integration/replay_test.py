@@ -75,6 +75,41 @@ class Replay(unittest.TestCase):
                 self.run_armjig("trace", "convert", file, packets)
                 self.run_armjig("replay", packets, "--target", "emulated:")
 
+    def test_recordings_of_real_devices_set_the_emulated_one_up(self):
+        """Switches, parameters, clocks, a shaft turned by hand, an arm that is unplugged."""
+        loose = self.folder / "loose.toml"
+        loose.write_text('time_ms = 60\norder = "free"\n')
+        for name, rules in (("parol6/jog_stops_a", ()), ("parol6/estop_and_inputs_a", ()),
+                            ("morap/loop-friction", ()), ("morap/stim-encoder-angle", ()),
+                            ("morap/stim-adc-current", ()), ("morap/pen-buttons", ()),
+                            ("kinovazed/fault-unplug-idle", ("--rules", loose))):
+            with self.subTest(name):
+                file = f"{SOURCE}/captures/{name}.jsonl"
+                done = self.run_armjig("replay", file, "--target", "emulated:", *rules)
+                self.assertEqual(done.stdout, "equal\n")
+                self.assertNotIn("input", done.stderr)
+        # On another one they are not equal, so that the header counts.
+        for name in ("parol6/jog_stops_a", "morap/loop-friction"):
+            with self.subTest(name):
+                other = {"parol6": "pass-us=10", "morap": "nodes=1"}[name.split("/", 1)[0]]
+                self.run_armjig("replay", f"{SOURCE}/captures/{name}.jsonl", "--target",
+                                f"emulated:?{other}", code=1)
+
+    def test_a_hosted_device_is_like_that_of_a_recording(self):
+        file = f"{SOURCE}/captures/parol6/framing_crc_any_a.jsonl"
+        place = self.emulate("parol6", "--pty", "--set", f"like={file}")
+        target = place if place.startswith("pty:") else f"pty:{place}"
+        self.run_armjig("replay", file, "--target", target, "--rules", self.rules, "--allow",
+                        "state,move")
+
+    def test_like_stands_alone_and_says_what_it_cannot_read(self):
+        for words, said in (("like=/no/such", "like=/no/such: "),
+                            (f"like={JOG}&pass-us=10", "place of all other options"),
+                            (f"like={SOURCE}/README.md", "README.md")):
+            with self.subTest(words):
+                done = self.run_armjig("console", "parol6", "--target", f"emulated:?{words}", code=2)
+                self.assertIn(said, done.stderr)
+
     def test_what_was_written_by_hand(self):
         self.run_armjig("replay", f"{SOURCE}/captures/demo/start-and-halt.jsonl", "--target",
                         "emulated:")

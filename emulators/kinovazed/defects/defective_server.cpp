@@ -37,11 +37,12 @@ constexpr std::array kInputs{
 
 std::span<const DeviceInput> server_inputs() noexcept { return kInputs; }
 
-DefectiveServer::DefectiveServer(Server server, std::vector<Quirk> quirks)
+DefectiveServer::DefectiveServer(Server server, std::vector<Quirk> quirks, Instant start)
     : fresh_{server},
       server_{std::move(server)},
       quirks_{std::move(quirks)},
-      memories_(quirks_.size()) {}
+      memories_(quirks_.size()),
+      epoch_{start} {}
 
 bool DefectiveServer::is_listening() const noexcept {
   return server_.life() == Server::Life::kRunning || server_.life() == Server::Life::kHung;

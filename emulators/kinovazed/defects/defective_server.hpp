@@ -23,7 +23,8 @@ namespace armjig::kinovazed::emulation {
 /// the server itself. Times given never decrease.
 class DefectiveServer : public Sending<ServerEvent> {
  public:
-  explicit DefectiveServer(Server server, std::vector<Quirk> quirks = {});
+  /// `start`: when its process began, by the clock of its clients.
+  explicit DefectiveServer(Server server, std::vector<Quirk> quirks = {}, Instant start = {});
 
   [[nodiscard]] bool is_listening() const noexcept;
   [[nodiscard]] std::optional<ConnectionId> connect(Instant time);

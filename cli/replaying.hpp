@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "harness/compare/recording_diff.hpp"
+#include "harness/compare/rules.hpp"
+#include "harness/foreign/foreign.hpp"
+#include "harness/rig/rig.hpp"
+
+namespace armjig::cli {
+
+/// How the host's side of a recording is played, and what may differ then.
+struct ReplayHow {
+  RigOptions rig;
+  ComparisonRules rules;
+  double speed = 1;  ///< 2: in half the time
+  ForeignHow foreign;
+};
+
+/// What a device said to the host of a recording, beside what it had said.
+struct ReplayedRecording {
+  RecordedMessages expected;
+  RecordedMessages actual;
+  std::vector<RecordingDifference> found;  ///< of the messages of both
+  /// What could neither be played nor seen there, by its name, and how often.
+  std::map<std::string, std::size_t> left_out;
+
+  [[nodiscard]] std::size_t count() const { return expected.count() + actual.count(); }
+};
+
+/// Plays a recording of one link to the device behind `how.rig`. Problems: of the file, of the
+/// target, `kForbidden` for what the recording needs and was not granted, before the first byte.
+[[nodiscard]] Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& path,
+                                                          const ReplayHow& how);
+
+}  // namespace armjig::cli
