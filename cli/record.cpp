@@ -17,7 +17,6 @@
 #include "cli/serving.hpp"
 #include "cli/terminal.hpp"
 #include "emulators/host/relay.hpp"
-#include "harness/core/number.hpp"
 #include "harness/rig/real_target.hpp"
 
 namespace armjig::cli {
@@ -37,60 +36,6 @@ constexpr auto kRecordHelp =
     "was late itself, it says so, and holds it against nobody. Ctrl-C ends it, with a whole file.\n"
     "\n"
     "Exit codes: 0 recorded, 1 findings of --check, 3 the device is not there, or gone.";
-
-tl::unexpected<Problem> bad_place(const RecordOptions& options, std::string_view hint) {
-  return problem(ErrorCode::kBadValue, "--listen " + options.listen, std::string{hint});
-}
-
-/// `[HOST:]PORT`
-std::optional<TcpOptions> parse_tcp_place(std::string_view text) {
-  TcpOptions tcp;
-  const auto colon = text.rfind(':');
-  if (colon != std::string_view::npos) {
-    tcp.address = text.substr(0, colon);
-    if (tcp.address.starts_with('[') && tcp.address.ends_with(']')) {
-      tcp.address = tcp.address.substr(1, tcp.address.size() - 2);
-    }
-    text.remove_prefix(colon + 1);
-  }
-  const auto port = whole_text_as<std::uint16_t>(text);
-  if (!port || tcp.address.empty()) return std::nullopt;
-  tcp.port = *port;
-  return tcp;
-}
-
-Outcome<Serving> parse_listen(const RecordOptions& options, const Device& device) {
-  constexpr int kLastBus = 255;
-  Serving serving{options.device, server_options(), 1, options.wants_json};
-  serving.is_quiet = options.is_quiet;
-  if (options.is_quiet) serving.how.log = [](std::string_view /*line*/) {};
-  std::string_view place = options.listen;
-  const auto takes = [&place](std::string_view scheme) {
-    if (!place.starts_with(scheme)) return false;
-    place.remove_prefix(scheme.size());
-    return true;
-  };
-  if (std::holds_alternative<OnBus>(device.port)) {
-    if (!takes("i2c:")) return bad_place(options, "this device is on a bus: write i2c:N");
-    (void)takes("/dev/i2c-");
-    const auto number = whole_text_as<int>(place);
-    if (!number || *number < 0 || *number > kLastBus) {
-      return bad_place(options, "write i2c:N, 0 to 255");
-    }
-    serving.bus = *number;
-  } else if (takes("pty:")) {
-    if (std::holds_alternative<OnServer>(device.port)) {
-      return bad_place(options, "it is a TCP server and has no pseudo-terminal: write tcp:PORT");
-    }
-    serving.how.pty = PtyOptions{std::string{place}};
-  } else if (takes("tcp:")) {
-    serving.how.tcp = parse_tcp_place(place);
-    if (!serving.how.tcp) return bad_place(options, "write tcp:PORT or tcp:HOST:PORT");
-  } else {
-    return bad_place(options, "write pty:, pty:PATH, tcp:PORT or tcp:HOST:PORT");
-  }
-  return serving;
-}
 
 /// The device, whether it is emulated or at the other end of a link.
 template <class Kind>
@@ -139,8 +84,13 @@ Exit record(Devices devices, const RecordOptions& options) {
   const auto& device = **found;
   const auto target = parse_target(options.target);
   if (!target) return report(target.error());
-  const auto serving = parse_listen(options, device);
+  auto serving = parse_listen(options.listen, device);
   if (!serving) return report(serving.error());
+  serving->wants_json = options.wants_json;
+  if (options.is_quiet) {
+    serving->is_quiet = true;
+    serving->how.log = [](std::string_view /*line*/) {};
+  }
   const auto check = check_if(options.wants_check, device, 1);
   if (!check) return report(check.error());
   const auto files = ReportOutputs::open(options.files, options.wants_json ? "--json" : "");

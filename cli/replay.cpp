@@ -17,13 +17,15 @@ namespace armjig::cli {
 namespace {
 
 constexpr auto kReplayHelp =
-    "Plays the host's side of a recording against a device and compares what the device says.\n"
+    "Plays one side of a recording and compares what the other side says.\n"
     "\n"
     "  armjig replay session.jsonl --target emulated:                  in virtual time\n"
     "  armjig replay session.pcapng --target pty:/tmp/arm --rules rules.toml --allow state,move\n"
     "  armjig replay session.jsonl --target tcp:robot:51717 --rules rules.toml --speed 0.5\n"
+    "  armjig replay session.jsonl --listen pty:/tmp/arm --rules rules.toml\n"
     "\n"
-    "Each message leaves at its time. The answers are aligned with the recorded ones as by "
+    "With --target it plays the host. Each message leaves at its time. The answers are aligned "
+    "with the recorded ones as by "
     "'armjig\n"
     "diff'; --rules FILE says what may differ, as there. Without it times are compared, too, "
     "which\n"
@@ -33,12 +35,19 @@ constexpr auto kReplayHelp =
     "asked\n"
     "for before the first byte.\n"
     "\n"
+    "With --listen it plays the device, for a program that is started on that place: it says what "
+    "it\n"
+    "said when the program has said what was said before. It ends with the recording, on a bus "
+    "with\n"
+    "Ctrl-C.\n"
+    "\n"
     "Exit codes: 0 equal within the rules, 1 different, 2 usage or not to be played, 3 the "
     "target,\n"
     "or it needs --allow, 4 nothing to compare.";
 
 struct ReplayOptions {
   std::string file;
+  std::string listen;
   TargetOptions target;
   ComparisonOptions comparison;
   double speed = 1;
@@ -53,22 +62,38 @@ void print_left_out(const ReplayedRecording& replayed) {
   }
 }
 
+Outcome<ReplayedRecording> play_host_side(Devices devices, const ReplayOptions& options,
+                                          const ComparisonRules& rules, const ForeignHow& foreign) {
+  auto rig = parse_target_options(options.target);
+  if (!rig) return tl::unexpected{rig.error()};
+  return replay_recording(devices, options.file, {*std::move(rig), rules, options.speed, foreign});
+}
+
+Outcome<ReplayedRecording> play_device_side(Devices devices, const ReplayOptions& options,
+                                            const ComparisonRules& rules,
+                                            const ForeignHow& foreign) {
+  return play_recorded_device(
+      devices, options.file,
+      {options.listen, options.comparison.wants_json, rules, options.speed, foreign});
+}
+
 Exit replay(Devices devices, const ReplayOptions& options) {
   const auto rules = rules_of(options.comparison.rules);
   if (!rules) return report(rules.error());
   const auto foreign = foreign_how(devices, options.foreign, {});
   if (!foreign) return report(foreign.error());
-  const auto rig = parse_target_options(options.target);
-  if (!rig) return report(rig.error());
   const auto files = open_outputs({{"--html", options.comparison.html}});
   if (!files) return report(files.error());
-  const auto claimed = claim_standard_output(options.comparison.wants_json ? "--json" : "");
+  const bool is_device = !options.listen.empty();
+  const auto claimed =
+      claim_standard_output(options.comparison.wants_json && !is_device ? "--json" : "");
   if (!claimed) return report(claimed.error());
-  const auto replayed =
-      replay_recording(devices, options.file, {*rig, *rules, options.speed, *foreign});
+  const auto replayed = is_device ? play_device_side(devices, options, *rules, *foreign)
+                                  : play_host_side(devices, options, *rules, *foreign);
   if (!replayed) return report(replayed.error());
   print_left_out(*replayed);
-  return tell(replayed->found, {options.file, options.target.target, replayed->count()},
+  return tell(replayed->found,
+              {options.file, is_device ? options.listen : options.target.target, replayed->count()},
               options.comparison.wants_json, files->front());
 }
 
@@ -79,6 +104,13 @@ void add_replay(CLI::App& app, Devices devices, Action& action) {
   const auto options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", options->file, "a recording, '-' for standard input")->required();
   add_target_options(*command, options->target);
+  auto* listen = command
+                     ->add_option("--listen", options->listen,
+                                  "play the device there: pty:[PATH], tcp:[HOST:]PORT, i2c:N")
+                     ->type_name("PLACE");
+  for (const auto* name : {"--target", "--allow", "--impair", "--capture"}) {
+    listen->excludes(command->get_option(name));
+  }
   add_comparison_options(*command, options->comparison);
   command
       ->add_option("--speed", options->speed,

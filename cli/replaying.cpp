@@ -12,6 +12,8 @@
 #include "cli/device.hpp"
 #include "cli/diff.hpp"
 #include "cli/foreign_options.hpp"
+#include "cli/serving.hpp"
+#include "emulators/replay/device_role.hpp"
 #include "emulators/replay/host_role.hpp"
 
 namespace armjig::cli {
@@ -188,6 +190,30 @@ Outcome<const Device*> device_of(Devices devices, const std::string& path, const
   return device;
 }
 
+/// Both sides as messages, and what differs.
+Outcome<ReplayedRecording> compared(Devices devices, const Session& session,
+                                    const std::vector<KeptRecord>& expected,
+                                    const std::vector<KeptRecord>& actual,
+                                    const ComparisonRules& rules) {
+  ReplayedRecording replayed{
+      RecordedMessages{dissectors_of(devices)}, RecordedMessages{dissectors_of(devices)}, {}, {}};
+  for (const auto& [records, messages] :
+       {std::pair{&expected, &replayed.expected}, std::pair{&actual, &replayed.actual}}) {
+    if (const auto added = add_messages(session, *records, *messages); !added) {
+      return tl::unexpected{added.error()};
+    }
+  }
+  replayed.found = diff(replayed.expected, replayed.actual, rules);
+  return replayed;
+}
+
+void warn_of_patience(const HostSaid& said) {
+  if (said.not_awaited == 0) return;
+  fmt::print(stderr,
+             "armjig: {} things that the program was to do were not waited for any longer\n",
+             said.not_awaited);
+}
+
 }  // namespace
 
 Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& path,
@@ -206,18 +232,33 @@ Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& 
       },
       (*device)->port);
   if (!played) return tl::unexpected{played.error()};
-  ReplayedRecording replayed{RecordedMessages{dissectors_of(devices)},
-                             RecordedMessages{dissectors_of(devices)},
-                             {},
-                             std::move(played->left_out)};
-  for (const auto& [records, messages] : {std::pair{&played->expected, &replayed.expected},
-                                          std::pair{&played->actual, &replayed.actual}}) {
-    if (const auto added = add_messages(*session, *records, *messages); !added) {
-      return tl::unexpected{added.error()};
-    }
+  auto replayed = compared(devices, *session, played->expected, played->actual, how.rules);
+  if (!replayed) return replayed;
+  replayed->left_out = std::move(played->left_out);
+  forgive_ends(*session, *played, how.rules.time_tolerance, replayed->found);
+  return replayed;
+}
+
+Outcome<ReplayedRecording> play_recorded_device(Devices devices, const std::string& path,
+                                                const ListenHow& how) {
+  const auto session = read_session(path, how.foreign);
+  if (!session) return tl::unexpected{session.error()};
+  const auto device = device_of(devices, path, *session);
+  if (!device) return tl::unexpected{device.error()};
+  auto serving = parse_listen(how.place, **device);
+  if (!serving) return tl::unexpected{serving.error()};
+  serving->wants_json = how.wants_json;
+  serving->is_quiet = true;
+  auto [hosted, said] = play_device(session->link.kind, session->records,
+                                    {.speed = how.speed,
+                                     .trailing = how.rules.time_tolerance,
+                                     .make_dissector = (*device)->make_dissector});
+  if (auto served = serve(std::move(hosted), *serving); !served) {
+    return tl::unexpected{served.error()};
   }
-  replayed.found = diff(replayed.expected, replayed.actual, how.rules);
-  forgive_ends(*session, *played, how.rules.time_tolerance, replayed.found);
+  warn_of_patience(*said);
+  auto replayed = compared(devices, *session, said->expected, said->actual, how.rules);
+  if (replayed) replayed->left_out = said->left_out;
   return replayed;
 }
 

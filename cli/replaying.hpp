@@ -22,7 +22,16 @@ struct ReplayHow {
   ForeignHow foreign;
 };
 
-/// What a device said to the host of a recording, beside what it had said.
+/// How the device's side of a recording is played, and what may differ then.
+struct ListenHow {
+  std::string place;  ///< where the program finds it, as for `parse_listen`
+  bool wants_json = false;
+  ComparisonRules rules;
+  double speed = 1;
+  ForeignHow foreign;
+};
+
+/// What the other side of a recording says now, beside what it had said.
 struct ReplayedRecording {
   RecordedMessages expected;
   RecordedMessages actual;
@@ -37,5 +46,11 @@ struct ReplayedRecording {
 /// target, `kForbidden` for what the recording needs and was not granted, before the first byte.
 [[nodiscard]] Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& path,
                                                           const ReplayHow& how);
+
+/// Plays the device until the recording is over or a signal comes. Problems: of the file and the
+/// place.
+[[nodiscard]] Outcome<ReplayedRecording> play_recorded_device(Devices devices,
+                                                              const std::string& path,
+                                                              const ListenHow& how);
 
 }  // namespace armjig::cli

@@ -19,6 +19,7 @@
 #include "cli/program_judge.hpp"
 #include "cli/terminal.hpp"
 #include "emulators/lab/virtual_i2c.hpp"
+#include "harness/core/number.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -79,6 +80,27 @@ Outcome<void> serve_bus(std::unique_ptr<HostedBus> hosted, const Serving& servin
   return {};
 }
 
+tl::unexpected<Problem> bad_place(const std::string& listen, std::string_view hint) {
+  return problem(ErrorCode::kBadValue, "--listen " + listen, std::string{hint});
+}
+
+/// `[HOST:]PORT`
+std::optional<TcpOptions> parse_tcp_place(std::string_view text) {
+  TcpOptions tcp;
+  const auto colon = text.rfind(':');
+  if (colon != std::string_view::npos) {
+    tcp.address = text.substr(0, colon);
+    if (tcp.address.starts_with('[') && tcp.address.ends_with(']')) {
+      tcp.address = tcp.address.substr(1, tcp.address.size() - 2);
+    }
+    text.remove_prefix(colon + 1);
+  }
+  const auto port = whole_text_as<std::uint16_t>(text);
+  if (!port || tcp.address.empty()) return std::nullopt;
+  tcp.port = *port;
+  return tcp;
+}
+
 }  // namespace
 
 HostOptions server_options() {
@@ -86,6 +108,37 @@ HostOptions server_options() {
   host.on_signal = HostOptions::OnSignal::kStop;
   host.log = [](std::string_view line) { fmt::print(stderr, "armjig: {}\n", line); };
   return host;
+}
+
+Outcome<Serving> parse_listen(const std::string& listen, const Device& device) {
+  constexpr int kLastBus = 255;
+  Serving serving{.device = std::string{device.name}, .how = server_options()};
+  std::string_view place = listen;
+  const auto takes = [&place](std::string_view scheme) {
+    if (!place.starts_with(scheme)) return false;
+    place.remove_prefix(scheme.size());
+    return true;
+  };
+  if (std::holds_alternative<OnBus>(device.port)) {
+    if (!takes("i2c:")) return bad_place(listen, "this device is on a bus: write i2c:N");
+    (void)takes("/dev/i2c-");
+    const auto number = whole_text_as<int>(place);
+    if (!number || *number < 0 || *number > kLastBus) {
+      return bad_place(listen, "write i2c:N, 0 to 255");
+    }
+    serving.bus = *number;
+  } else if (takes("pty:")) {
+    if (std::holds_alternative<OnServer>(device.port)) {
+      return bad_place(listen, "it is a TCP server and has no pseudo-terminal: write tcp:PORT");
+    }
+    serving.how.pty = PtyOptions{std::string{place}};
+  } else if (takes("tcp:")) {
+    serving.how.tcp = parse_tcp_place(place);
+    if (!serving.how.tcp) return bad_place(listen, "write tcp:PORT or tcp:HOST:PORT");
+  } else {
+    return bad_place(listen, "write pty:, pty:PATH, tcp:PORT or tcp:HOST:PORT");
+  }
+  return serving;
 }
 
 Outcome<void> serve(AnyHosted hosted, const Serving& serving) {

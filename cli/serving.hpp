@@ -27,6 +27,10 @@ struct Serving {
 /// With signals and a log, as servers have them.
 [[nodiscard]] HostOptions server_options();
 
+/// Where `--listen` says: `pty:[PATH]`, `tcp:[HOST:]PORT`, `i2c:N`. Problems: `kBadValue`, also for
+/// a place that is not for such a device.
+[[nodiscard]] Outcome<Serving> parse_listen(const std::string& listen, const Device& device);
+
 /// Says where it listens, and serves it until a signal comes. Lines on standard input do what can
 /// be done beside it. Problems: those of `Host::open` and `VirtualI2c::open`.
 [[nodiscard]] Outcome<void> serve(AnyHosted hosted, const Serving& serving);

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "emulators/replay/kept_record.hpp"
 #include "emulators/replay/replay.hpp"
-#include "harness/capture/capture.hpp"
 #include "harness/link/bus_port.hpp"
 #include "harness/link/session_source.hpp"
 #include "harness/link/stream_port.hpp"
@@ -18,29 +18,6 @@
 /// The host's side of a recording, played against a device, whoever and wherever it is: what the
 /// host sent leaves at its time, and what the device says is kept beside what it said.
 namespace armjig {
-
-/// A record that outlives its reader.
-struct KeptRecord {
-  Instant time{};
-  LinkKind kind{};
-  Direction direction{};
-  std::uint32_t id{};
-  std::vector<std::byte> bytes{};
-  std::string details{};
-
-  [[nodiscard]] static KeptRecord from(const CaptureRecord& record) {
-    return {record.time,
-            record.link->kind,
-            record.direction,
-            record.id,
-            {record.bytes.begin(), record.bytes.end()},
-            std::string{record.details}};
-  }
-  /// Valid as long as this and the link.
-  [[nodiscard]] CaptureRecord on(const CaptureLink& link) const {
-    return {time, &link, direction, id, bytes, details};
-  }
-};
 
 struct PlayHow {
   double speed = 1;  ///< 2: in half the time; what is kept has the times of the recording

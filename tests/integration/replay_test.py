@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""`armjig replay` plays the host of a recording: in virtual time, and to hosted devices on a
-pseudo-terminal, TCP and a virtual I2C bus: replay_test.py ARMJIG SOURCE
+"""`armjig replay` plays the host or the device of a recording: in virtual time, and on
+pseudo-terminals, TCP and a virtual I2C bus: replay_test.py ARMJIG SOURCE
 """
 
 import json
+import os
 import pathlib
 import signal
 import subprocess
@@ -148,6 +149,64 @@ class Replay(unittest.TestCase):
         self.run_armjig("lab", "exec", "--i2c", bus, "--", ARMJIG, "replay", self.record("morap"),
                         "--target", "i2c:/dev/i2c-1", "--rules", self.rules)
 
+    def play_device(self, file, listen, *words):
+        """The device of a recording for other programs, where it is, and what they need for it."""
+        process = subprocess.Popen([ARMJIG, "replay", file, "--listen", listen, "--json", *words],
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(lambda: process.poll() is None and process.communicate())
+        self.addCleanup(lambda: process.poll() is None and process.kill())
+        said = json.loads(process.stdout.readline())
+        place = said["listening"][0]
+        needs = dict(word.split("=", 1) for word in said.get("environment", []))
+        return process, place, needs
+
+    def verdict_of(self, process, code):
+        out, err = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, code, out + err)
+        return json.loads(out)
+
+    def test_a_host_hears_the_device_that_was_recorded(self):
+        for device, listen in (("parol6", "pty:"), ("parol6", "tcp:0"), ("kinovazed", "tcp:0")):
+            with self.subTest(device, listen=listen):
+                file = self.record(device, 3)
+                process, place, _ = self.play_device(file, listen, "--rules", self.rules)
+                self.run_armjig("replay", file, "--target", place, "--rules", self.rules,
+                                "--allow", "state")
+                self.assertTrue(self.verdict_of(process, 0)["equal"])
+
+    def test_a_host_on_a_bus_hears_it_until_ctrl_c(self):
+        file = self.record("morap", 2)
+        process, place, needs = self.play_device(file, "i2c:1", "--rules", self.rules)
+        done = subprocess.run([ARMJIG, "replay", file, "--target", place, "--rules", self.rules],
+                              env={**os.environ, **needs}, capture_output=True, text=True,
+                              check=False, stdin=subprocess.DEVNULL, timeout=PATIENCE)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        process.send_signal(signal.SIGINT)
+        self.assertTrue(self.verdict_of(process, 0)["equal"])
+
+    def test_a_host_that_says_something_else_is_told(self):
+        file = self.record("parol6", 2)
+        other = self.changed(file, "to_device", '"hex":"ffffff34000000', '"hex":"ffffff34000001')
+        process, target, _ = self.play_device(file, "pty:", "--rules", self.rules)
+        self.run_armjig("replay", other, "--target", target, "--rules", self.rules, "--allow",
+                        "state")
+        found = self.verdict_of(process, 1)
+        self.assertEqual([one["change"] for one in found["differences"]], ["changed"])
+        self.assertEqual(found["differences"][0]["before"]["direction"], "to_device")
+
+    def test_a_host_that_stops_in_the_middle_is_told(self):
+        file = self.record("parol6", 3)
+        lines = file.read_text().splitlines()
+        half = self.folder / "half.jsonl"
+        half.write_text("\n".join(lines[: len(lines) // 2]) + "\n")
+        process, target, _ = self.play_device(file, "pty:", "--rules", self.rules)
+        self.run_armjig("replay", half, "--target", target, "--rules", self.rules, "--allow",
+                        "state")
+        process.send_signal(signal.SIGINT)
+        found = self.verdict_of(process, 1)
+        self.assertEqual({one["change"] for one in found["differences"]}, {"missing"})
+
     def test_speed_is_scaled_back(self):
         """Ten times as fast, a server says a tenth of its heartbeats."""
         done = self.run_armjig("replay", self.record("kinovazed", 10), "--target", "emulated:",
@@ -171,7 +230,10 @@ class Replay(unittest.TestCase):
         for words in ((JOG,), (JOG, "--target", "nowhere"), (empty, "--target", "emulated:"),
                       (toaster, "--target", "emulated:"), ("/no/such", "--target", "emulated:"),
                       (JOG, "--target", "emulated:", "--speed", "0"),
-                      (JOG, "--target", "emulated:", "--rules", "/no/such")):
+                      (JOG, "--target", "emulated:", "--rules", "/no/such"),
+                      (JOG, "--target", "emulated:", "--listen", "pty:"),
+                      (JOG, "--listen", "pty:", "--allow", "move"),
+                      (JOG, "--listen", "i2c:1"), (JOG, "--listen", "nowhere")):
             with self.subTest(words=words):
                 self.run_armjig("replay", *words, code=2)
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/capture/capture.hpp"
+#include "harness/core/time.hpp"
+
+namespace armjig {
+
+/// A record that outlives its reader.
+struct KeptRecord {
+  Instant time{};
+  LinkKind kind{};
+  Direction direction{};
+  std::uint32_t id{};
+  std::vector<std::byte> bytes{};
+  std::string details{};
+
+  [[nodiscard]] static KeptRecord from(const CaptureRecord& record) {
+    return {record.time,
+            record.link->kind,
+            record.direction,
+            record.id,
+            {record.bytes.begin(), record.bytes.end()},
+            std::string{record.details}};
+  }
+  /// Valid as long as this and the link.
+  [[nodiscard]] CaptureRecord on(const CaptureLink& link) const {
+    return {time, &link, direction, id, bytes, details};
+  }
+};
+
+/// A member of its details, which are JSON; empty, or `otherwise`, if there is no such one.
+[[nodiscard]] std::string text_in(const KeptRecord& record, const char* key);
+[[nodiscard]] std::int64_t number_in(const KeptRecord& record, const char* key,
+                                     std::int64_t otherwise);
+
+}  // namespace armjig

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Both roles of a recording against each other: what one side plays is what the other one was to
+// hear, at its time.
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "emulators/memory/in_memory.hpp"
+#include "emulators/replay/device_role.hpp"
+#include "emulators/replay/host_role.hpp"
+#include "harness/capture/trace.hpp"
+#include "harness/core/hex.hpp"
+#include "harness/files/user_file.hpp"
+#include "harness/wire/kinovazed/dissector.hpp"
+#include "harness/wire/morap/dissector.hpp"
+#include "harness/wire/parol6/dissector.hpp"
+#include "tests/unit/support/source_dir.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Where the recordings of a real device are, and what they are of.
+struct Corpus {
+  const char* folder;
+  LinkKind kind;
+  MakeDissector make_dissector;
+};
+
+void PrintTo(const Corpus& corpus, std::ostream* out) { *out << corpus.folder; }
+
+constexpr Corpus kParol6{"parol6", LinkKind::kStream, parol6::make_dissector};
+constexpr Corpus kKinovazed{"kinovazed", LinkKind::kSession, kinovazed::make_dissector};
+constexpr Corpus kMorap{"morap", LinkKind::kBus, morap::make_dissector};
+
+std::string folder_of(const Corpus& corpus) {
+  return std::string{source_dir()} + "/captures/" + corpus.folder;
+}
+
+std::vector<KeptRecord> records_of(const std::string& path, LinkKind kind) {
+  auto file = UserFile::open(path);
+  auto reader = CaptureReader::open(*std::move(file), path);
+  std::vector<KeptRecord> records;
+  EXPECT_TRUE(for_each_record(**reader, [&](const CaptureRecord& record) -> Outcome<void> {
+    const bool is_of_it = record.link->kind == kind || record.link->kind == LinkKind::kEvents;
+    if (is_of_it) records.push_back(KeptRecord::from(record));
+    return {};
+  }));
+  EXPECT_FALSE(records.empty());
+  return records;
+}
+
+/// A line each: when, who, what. What came together on a stream is one.
+std::string text_of(const std::vector<KeptRecord>& records) {
+  std::string text;
+  const KeptRecord* before = nullptr;
+  for (const auto& record : records) {
+    const bool is_rest = before != nullptr && record.kind == LinkKind::kStream &&
+                         before->time == record.time && before->direction == record.direction;
+    if (!is_rest) {
+      // When something passes on a bus only its host decides.
+      const auto time = record.kind == LinkKind::kBus ? Instant{} : record.time;
+      text += fmt::format("\n{} {} {} {} ", time.time_since_epoch().count(),
+                          to_string(record.direction), record.id, text_in(record, "ack"));
+    }
+    text += to_hex(record.bytes);
+    if (record.kind == LinkKind::kEvents) text += text_in(record, "dir") + text_in(record, "text");
+    before = &record;
+  }
+  return text;
+}
+
+void expect_both_hear_what_was_recorded(const Corpus& corpus, const std::string& path) {
+  SCOPED_TRACE(path);
+  const auto records = records_of(path, corpus.kind);
+  auto [device, said] =
+      play_device(corpus.kind, records, {.trailing = 10s, .make_dissector = corpus.make_dissector});
+  const auto played = std::visit(
+      [&](auto& hosted) {
+        const auto port = open_in_memory(std::move(hosted));
+        return play_host(*port, records, PlayHow{});
+      },
+      device);
+  ASSERT_TRUE(played) << describe(played.error());
+  EXPECT_EQ(text_of(played->actual), text_of(played->expected));
+  EXPECT_EQ(text_of(said->actual), text_of(said->expected));
+  EXPECT_EQ(said->not_awaited, 0U);
+  EXPECT_FALSE(said->expected.empty());
+}
+
+class BothRoles : public ::testing::TestWithParam<Corpus> {};
+
+TEST_P(BothRoles, HearFromEachOtherWhatWasRecorded) {
+  const auto files = find_traces({folder_of(GetParam())});
+  ASSERT_TRUE(files);
+  EXPECT_GT(files->size(), 50U);
+  for (const auto& file : *files) expect_both_hear_what_was_recorded(GetParam(), file);
+}
+
+INSTANTIATE_TEST_SUITE_P(Golden, BothRoles, ::testing::Values(kParol6, kKinovazed, kMorap),
+                         ::testing::PrintToStringParamName());
+
+TEST(DeviceRole, WaitsForTheHostAndThenTakesTheTimeThatItTook) {
+  const auto records = records_of(folder_of(kParol6) + "/jog_stops_a.jsonl", LinkKind::kStream);
+  auto [device, said] =
+      play_device(LinkKind::kStream, records, {.make_dissector = parol6::make_dissector});
+  auto& stream = *std::get<std::unique_ptr<HostedStream>>(device);
+  stream.advance_to(at(0s));
+  stream.advance_to(at(10min));
+  EXPECT_TRUE(stream.sent().empty()) << "its first word is waited for";
+  EXPECT_FALSE(stream.is_gone());
+
+  // Its first frame, ten minutes late and in two pieces.
+  const auto& first = records.front();
+  ASSERT_EQ(first.direction, Direction::kToDevice);
+  const auto bytes = Bytes{first.bytes};
+  stream.receive(at(10min), bytes.first(3));
+  EXPECT_TRUE(stream.sent().empty());
+  stream.receive(at(10min), bytes.subspan(3));
+  const auto delay = records[1].time - first.time;
+  ASSERT_EQ(records[1].direction, Direction::kFromDevice);
+  stream.advance_to(at(10min) + delay - 1ns);
+  EXPECT_TRUE(stream.sent().empty());
+  stream.advance_to(at(10min) + delay);
+  ASSERT_EQ(stream.sent().size(), 1U);
+  EXPECT_EQ(stream.sent().front().bytes, records[1].bytes);
+  EXPECT_EQ(stream.sent().front().time, at(10min) + delay);
+
+  // A host that says nothing more is not waited for for ever.
+  stream.clear_sent();
+  stream.advance_to(at(60min));
+  EXPECT_GT(said->not_awaited, 0U);
+  EXPECT_GT(stream.sent().size(), 10U);
+  stream.clear_sent();
+  EXPECT_TRUE(stream.is_gone());
+}
+
+}  // namespace
+}  // namespace armjig
