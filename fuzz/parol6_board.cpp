@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "emulators/parol6/board.hpp"
+#include "fuzz/input.hpp"
 #include "fuzz/require.hpp"
 
 namespace armjig::fuzz {
@@ -26,33 +27,6 @@ using parol6::emulation::Board;
 /// What one input may cost the board that computes every pass.
 constexpr std::int64_t kMostPasses = 6'000;
 constexpr int kMostOperations = 60;
-
-class Input {
- public:
-  explicit Input(Bytes rest) noexcept : rest_{rest} {}
-
-  [[nodiscard]] bool is_empty() const noexcept { return rest_.empty(); }
-
-  std::uint8_t u8() noexcept {
-    if (rest_.empty()) return 0;
-    const auto value = std::to_integer<std::uint8_t>(rest_[0]);
-    rest_ = rest_.subspan(1);
-    return value;
-  }
-  std::int16_t i16() noexcept {
-    const auto high = u8();
-    return static_cast<std::int16_t>(high << 8 | u8());
-  }
-  /// Up to `most` bytes.
-  Bytes bytes(std::size_t most) noexcept {
-    const auto taken = rest_.first(std::min(most, rest_.size()));
-    rest_ = rest_.subspan(taken.size());
-    return taken;
-  }
-
- private:
-  Bytes rest_;
-};
 
 constexpr std::array kCodes{Command::kIdle,    Command::kJog,       Command::kGoTo,
                             Command::kHome,    Command::kDemo,      Command::kEnable,

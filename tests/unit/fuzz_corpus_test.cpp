@@ -20,6 +20,9 @@
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_server
 #include "fuzz/kinovazed_server.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_morap_node
+#include "fuzz/morap_node.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_morap_wire
 #include "fuzz/morap_wire.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -76,6 +79,8 @@ TEST(FuzzCorpus, NoClientEndsTheEmulatedServer) {
 TEST(FuzzCorpus, CoastingOverPassesCannotBeNoticed) {
   run_corpus(fuzz_parol6_board, "parol6_board");
 }
+
+TEST(FuzzCorpus, LeapingOverTicksCannotBeNoticed) { run_corpus(fuzz_morap_node, "morap_node"); }
 
 TEST(FuzzCorpus, AnyTextIsAProgramOrRefused) { run_corpus(fuzz_rbtscript, "rbtscript"); }
 
