@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+# What takes minutes to hours: ctest -L soak.
+
+# All faulty boards: every one that is not equivalent is found, every must is broken by one.
+add_test(NAME soak.mutants COMMAND armjig conformance mutants parol6)
+set_tests_properties(soak.mutants PROPERTIES LABELS soak TIMEOUT 1800)
+
+# ctest -L soak; ARMJIG_SOAK_MINUTES sets the length, 10 if it is not set.
+foreach(soak IN ITEMS garbage kinovazed resets)
+  add_executable(${soak}_soak ${soak}_soak.cpp)
+  target_link_libraries(${soak}_soak PRIVATE integration_support)
+  add_test(NAME soak.${soak} COMMAND ${soak}_soak)
+  set_tests_properties(soak.${soak} PROPERTIES LABELS soak TIMEOUT 86400)
+endforeach()
+
+# Random sessions: they verify, and fast emulators do what their plain models do.
+add_executable(sessions_soak sessions_soak.cpp)
+target_link_libraries(sessions_soak PRIVATE armjig_replay armjig_sessions Threads::Threads
+                                            fmt::fmt armjig_flags)
+add_test(NAME soak.sessions COMMAND sessions_soak)
+set_tests_properties(soak.sessions PROPERTIES LABELS soak TIMEOUT 86400)
+
+# Half a minute: what measuring costs, beside a bare echo.
+add_executable(latency_soak latency_soak.cpp)
+target_link_libraries(latency_soak PRIVATE integration_support fmt::fmt)
+add_test(NAME soak.latency COMMAND latency_soak)
+set_tests_properties(soak.latency PROPERTIES LABELS soak TIMEOUT 600 RUN_SERIAL TRUE)
+
+# A minute: what the tap costs, beside a relay that does nothing but poll, read and write.
+add_executable(tap_soak tap_soak.cpp)
+target_link_libraries(tap_soak PRIVATE integration_support fmt::fmt util)
+add_test(NAME soak.tap COMMAND tap_soak)
+set_tests_properties(soak.tap PROPERTIES LABELS soak TIMEOUT 600 RUN_SERIAL TRUE)
+
+# Two minutes: its schedule beside cyclictest's, and a host that is stopped. Needs rt-tests, which
+# scripts/bootstrap --dev installs.
+add_test(NAME soak.latency_host
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/latency_host_soak.py
+                 $<TARGET_FILE:armjig>)
+set_tests_properties(soak.latency_host PROPERTIES LABELS soak TIMEOUT 600 RUN_SERIAL TRUE)
+
+# An hour: how often `latency --against` is right on real pseudo-terminals.
+add_executable(delayed_echo delayed_echo.cpp)
+target_link_libraries(delayed_echo PRIVATE armjig_harness fmt::fmt util)
+add_test(NAME soak.latency_against
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/latency_against_soak.py
+                 $<TARGET_FILE:armjig> $<TARGET_FILE:delayed_echo>)
+set_tests_properties(soak.latency_against PROPERTIES LABELS soak TIMEOUT 36000 RUN_SERIAL TRUE)
+
+# Minutes: the same in virtual time.
+add_executable(latency_trials_soak latency_trials_soak.cpp)
+target_link_libraries(latency_trials_soak PRIVATE integration_support fmt::fmt)
+add_test(NAME soak.latency_trials COMMAND latency_trials_soak)
+set_tests_properties(soak.latency_trials PROPERTIES LABELS soak TIMEOUT 3600)
+
+add_executable(reachable_poses_soak reachable_poses_soak.cpp)
+target_link_libraries(reachable_poses_soak PRIVATE armjig_arm fmt::fmt armjig_flags)
+add_test(NAME soak.reachable_poses COMMAND reachable_poses_soak)
+set_tests_properties(soak.reachable_poses PROPERTIES LABELS soak TIMEOUT 3600)
+
+# Minutes, and 5 GB of disk: recordings of any size in little memory.
+add_test(NAME soak.trace
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/trace_soak.py $<TARGET_FILE:armjig>
+                 ${PROJECT_SOURCE_DIR}/captures/parol6/random_30s_a.jsonl)
+set_tests_properties(soak.trace PROPERTIES LABELS soak TIMEOUT 7200)
