@@ -21,7 +21,7 @@
 #include "fuzz/require.hpp"
 #include "harness/wire/morap/figures.hpp"
 
-namespace armjig::fuzz {
+namespace armjig::fuzz::nodes {
 namespace {
 
 using namespace std::chrono_literals;
@@ -185,10 +185,10 @@ void check_nodes(Input input) {
 }
 
 }  // namespace
-}  // namespace armjig::fuzz
+}  // namespace armjig::fuzz::nodes
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer calls
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  armjig::fuzz::check_nodes(armjig::fuzz::Input{std::as_bytes(std::span{data, size})});
+  armjig::fuzz::nodes::check_nodes(armjig::fuzz::Input{std::as_bytes(std::span{data, size})});
   return 0;
 }

@@ -154,11 +154,11 @@ class Talk {
   [[nodiscard]] bool is_over(Instant now) const {
     return has_begun_ && next_ == steps_.size() && now >= end();
   }
-  /// Whether the recording's connection of that number is refused.
-  [[nodiscard]] bool is_refused(std::uint32_t id) const {
-    return std::ranges::any_of(steps_, [id](const Step& step) {
+  /// Whether the recording's connection of that number began or ended so: `refused`.
+  [[nodiscard]] bool has_end(std::uint32_t id, std::string_view how) const {
+    return std::ranges::any_of(steps_, [&](const Step& step) {
       return is_border(step.record) && connection_of(step.record) == id &&
-             text_in(step.record, "text") == "refused";
+             text_in(step.record, "text") == how;
     });
   }
 
@@ -269,7 +269,7 @@ class PlayedServer final : public HostedServer {
     const auto number = connected_++;
     const bool is_known = number < connections_.size();
     const auto id = is_known ? connections_[number] : number;
-    const bool is_refused = !is_known || talk_.is_refused(id);
+    const bool is_refused = !is_known || talk_.has_end(id, "refused");
     talk_.note_border(time, id, "connect", is_refused ? "refused" : "ok");
     if (is_refused) return std::nullopt;
     numbers_[id] = next_;
@@ -282,8 +282,11 @@ class PlayedServer final : public HostedServer {
                {.kind = LinkKind::kSession, .direction = Direction::kToDevice, .id = ids_[number]},
                segment);
   }
+  /// A socket does not tell which of both it was until something is written to it.
   void half_close(Instant time, ConnectionId number) override {
-    end(time, number, "client-half-close");
+    const bool is_whole = talk_.has_end(ids_[number], "client-close");
+    end(time, number, is_whole ? "client-close" : "client-half-close");
+    if (is_whole) ended_.insert(number);
   }
   void close(Instant time, ConnectionId number) override { end(time, number, "client-close"); }
   void reset(Instant time, ConnectionId number) override { end(time, number, "client-reset"); }
@@ -302,7 +305,7 @@ class PlayedServer final : public HostedServer {
  private:
   void end(Instant time, ConnectionId number, std::string_view how) {
     advance_to(time);
-    if (ended_.contains(number)) return;  // by the device
+    if (ended_.contains(number)) return;
     talk_.note_border(time, ids_[number], "disconnect", how);
   }
   void say(Instant time, const KeptRecord& record) {

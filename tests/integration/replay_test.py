@@ -149,6 +149,12 @@ class Replay(unittest.TestCase):
         self.run_armjig("lab", "exec", "--i2c", bus, "--", ARMJIG, "replay", self.record("morap"),
                         "--target", "i2c:/dev/i2c-1", "--rules", self.rules)
 
+    def rules_of_devices(self):
+        """What armjig says first to a serial device, so that it finds the beginning of frames."""
+        rules = self.folder / "of-devices.toml"
+        rules.write_text(RULES + '[[message]]\nname = "noise"\nignore = true\n')
+        return rules
+
     def play_device(self, file, listen, *words):
         """The device of a recording for other programs, where it is, and what they need for it."""
         process = subprocess.Popen([ARMJIG, "replay", file, "--listen", listen, "--json", *words],
@@ -170,7 +176,7 @@ class Replay(unittest.TestCase):
         for device, listen in (("parol6", "pty:"), ("parol6", "tcp:0"), ("kinovazed", "tcp:0")):
             with self.subTest(device, listen=listen):
                 file = self.record(device, 3)
-                process, place, _ = self.play_device(file, listen, "--rules", self.rules)
+                process, place, _ = self.play_device(file, listen, "--rules", self.rules_of_devices())
                 self.run_armjig("replay", file, "--target", place, "--rules", self.rules,
                                 "--allow", "state")
                 self.assertTrue(self.verdict_of(process, 0)["equal"])
@@ -188,19 +194,20 @@ class Replay(unittest.TestCase):
     def test_a_host_that_says_something_else_is_told(self):
         file = self.record("parol6", 2)
         other = self.changed(file, "to_device", '"hex":"ffffff34000000', '"hex":"ffffff34000001')
-        process, target, _ = self.play_device(file, "pty:", "--rules", self.rules)
+        process, target, _ = self.play_device(file, "pty:", "--rules", self.rules_of_devices())
         self.run_armjig("replay", other, "--target", target, "--rules", self.rules, "--allow",
                         "state")
         found = self.verdict_of(process, 1)
-        self.assertEqual([one["change"] for one in found["differences"]], ["changed"])
-        self.assertEqual(found["differences"][0]["before"]["direction"], "to_device")
+        self.assertTrue(found["differences"])
+        self.assertEqual({one["lane"] for one in found["differences"]},
+                         {"parol6 stream 0 to_device"})
 
     def test_a_host_that_stops_in_the_middle_is_told(self):
         file = self.record("parol6", 3)
         lines = file.read_text().splitlines()
         half = self.folder / "half.jsonl"
         half.write_text("\n".join(lines[: len(lines) // 2]) + "\n")
-        process, target, _ = self.play_device(file, "pty:", "--rules", self.rules)
+        process, target, _ = self.play_device(file, "pty:", "--rules", self.rules_of_devices())
         self.run_armjig("replay", half, "--target", target, "--rules", self.rules, "--allow",
                         "state")
         process.send_signal(signal.SIGINT)

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Grouping = PathImpairment::Grouping;
-using Kind = DurationLaw::Kind;
+using LawKind = DurationLaw::Kind;
 
 Impairment parsed(std::string_view text) {
   auto impairment = parse_impairment(text);
@@ -36,7 +36,7 @@ std::string refused_by_line(std::string_view text) {
 TEST(ParseImpairment, ReadsWhatTheManualShows) {
   PathImpairment both;
   both.loss = 0.001;
-  both.delay = {Kind::kNormal, 2ms, 1ms};
+  both.delay = {LawKind::kNormal, 2ms, 1ms};
   both.split = {Grouping::kRandom, 0};
   EXPECT_EQ(parsed("loss=0.1%,delay=normal(2ms,1ms),split=random"), (Impairment{both, both, 1}));
 }
@@ -50,9 +50,9 @@ TEST(ParseImpairment, ReadsEveryOption) {
   both.reordering = {0.03, 5ms};
   both.split = {Grouping::kFixed, 7};
   both.merge = {Grouping::kFixed, 512, 3ms};
-  both.delay = {Kind::kUniform, 100us, 1500us};
+  both.delay = {LawKind::kUniform, 100us, 1500us};
   both.bandwidth = 300'000;
-  both.stall = {0.25, {Kind::kExponential, 1s, {}}};
+  both.stall = {0.25, {LawKind::kExponential, 1s, {}}};
   both.disconnect = 1e-5;
   both.disconnect_after = 1000;
   EXPECT_EQ(parsed("chunk=64,bit-errors=1e-6,loss=0.01,double=2%,reorder=3%:5ms,split=7,"
@@ -68,8 +68,8 @@ TEST(ParseImpairment, HasWaitsOfItsOwnForReorderAndMerge) {
 }
 
 TEST(ParseImpairment, TakesADurationForAConstantDelay) {
-  EXPECT_EQ(parsed("delay=250ns").in.delay, (DurationLaw{Kind::kConstant, 250ns, {}}));
-  EXPECT_EQ(parsed("delay=constant(1s)").in.delay, (DurationLaw{Kind::kConstant, 1s, {}}));
+  EXPECT_EQ(parsed("delay=250ns").in.delay, (DurationLaw{LawKind::kConstant, 250ns, {}}));
+  EXPECT_EQ(parsed("delay=constant(1s)").in.delay, (DurationLaw{LawKind::kConstant, 1s, {}}));
 }
 
 TEST(ParseImpairment, TakesADirection) {
@@ -77,7 +77,7 @@ TEST(ParseImpairment, TakesADirection) {
   PathImpairment out;
   out.loss = 0.01;
   PathImpairment in;
-  in.delay = {Kind::kConstant, 2ms, {}};
+  in.delay = {LawKind::kConstant, 2ms, {}};
   EXPECT_EQ(impairment, (Impairment{out, in, 1}));
 }
 

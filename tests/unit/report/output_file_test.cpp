@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using Kind = OutputFile::Kind;
+using FileKind = OutputFile::Kind;
 
 class OutputFileTest : public ::testing::Test {
  protected:
@@ -39,7 +39,7 @@ class OutputFileTest : public ::testing::Test {
   [[nodiscard]] std::ptrdiff_t files() const {
     return std::distance(fs::directory_iterator{folder_}, fs::directory_iterator{});
   }
-  static auto open(const std::string& path, Kind kind = Kind::kWhole) {
+  static auto open(const std::string& path, FileKind kind = FileKind::kWhole) {
     return OutputFile::open(path, kind);
   }
 
@@ -51,9 +51,9 @@ class OutputFileTest : public ::testing::Test {
 TEST_F(OutputFileTest, ChangesNothingBeforeItIsWritten) {
   const auto old = with("old", "good");
   const auto whole = open(old).value();
-  const auto growing = open(old, Kind::kGrowing).value();
+  const auto growing = open(old, FileKind::kGrowing).value();
   const auto next = open(path("new")).value();
-  const auto growing_next = open(path("newer"), Kind::kGrowing).value();
+  const auto growing_next = open(path("newer"), FileKind::kGrowing).value();
   EXPECT_EQ(content(old), "good");
   EXPECT_EQ(files(), 1);
 }
@@ -85,7 +85,7 @@ TEST_F(OutputFileTest, LeavesTheOldFileOnAFullDisk) {
 
 TEST_F(OutputFileTest, GrowsInPlaceAndEndsWithItsLastWholePiece) {
   const auto old = with("old", "what was there before");
-  const auto file = open(old, Kind::kGrowing).value();
+  const auto file = open(old, FileKind::kGrowing).value();
   ASSERT_TRUE(file->put("one,"));
   EXPECT_EQ(content(old), "one,") << "others see it at once";
   {
@@ -97,7 +97,7 @@ TEST_F(OutputFileTest, GrowsInPlaceAndEndsWithItsLastWholePiece) {
 }
 
 TEST_F(OutputFileTest, RefusesWhatCannotBeWritten) {
-  for (const auto kind : {Kind::kWhole, Kind::kGrowing}) {
+  for (const auto kind : {FileKind::kWhole, FileKind::kGrowing}) {
     for (const std::string& wrong :
          {path("no/such/folder"), folder_.string(), path("folder/"), std::string{"/proc/new"},
           with("file", "") + "/below", std::string{"/dev/fd/977"}}) {
@@ -193,7 +193,7 @@ TEST_F(OutputFileTest, KnowsOnePlaceByTwoSpellings) {
 }
 
 TEST_F(OutputFileTest, RotatesAndKeepsAsManyAsAreWanted) {
-  const auto file = open(path("log.txt"), Kind::kGrowing).value();
+  const auto file = open(path("log.txt"), FileKind::kGrowing).value();
   ASSERT_TRUE(file->can_rotate());
   for (const char* const piece : {"one", "two", "three", "four"}) {
     ASSERT_TRUE(file->put(piece));
@@ -208,12 +208,12 @@ TEST_F(OutputFileTest, RotatesAndKeepsAsManyAsAreWanted) {
 
 TEST_F(OutputFileTest, RotatesOnlyFilesThatGrow) {
   EXPECT_FALSE(open(path("whole"))->get()->can_rotate());
-  EXPECT_FALSE(open("/dev/null", Kind::kGrowing)->get()->can_rotate());
-  EXPECT_FALSE(open("-", Kind::kGrowing)->get()->can_rotate());
+  EXPECT_FALSE(open("/dev/null", FileKind::kGrowing)->get()->can_rotate());
+  EXPECT_FALSE(open("-", FileKind::kGrowing)->get()->can_rotate());
 }
 
 TEST_F(OutputFileTest, SaysThatItCannotRotate) {
-  const auto file = open(path("log"), Kind::kGrowing).value();
+  const auto file = open(path("log"), FileKind::kGrowing).value();
   ASSERT_TRUE(file->put("one"));
   fs::create_directory(path("log.1"));
   EXPECT_FALSE(file->rotate(2));
