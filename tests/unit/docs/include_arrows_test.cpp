@@ -61,7 +61,7 @@ constexpr Room kRooms[] = {
      "harness/core harness/wire emulators/kinovazed emulators/morap emulators/parol6"},
     {"emulators/replay",
      "harness/core harness/wire harness/capture harness/link emulators/demo emulators/i2c "
-     "emulators/kinovazed emulators/morap emulators/parol6"},
+     "emulators/kinovazed emulators/morap emulators/parol6 emulators/memory"},
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
     {"emulators/host", "harness/core harness/wire harness/link harness/timing emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},
