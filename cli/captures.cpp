@@ -50,7 +50,7 @@ constexpr auto kCheckHelp =
     "by 'armjig replay', one after the other unless it is emulated:, and --rules says what may\n"
     "differ. Folders are searched for *.jsonl and *.pcapng.\n"
     "\n"
-    "--update first tells what differs, then writes those recordings anew.\n"
+    "--update first tells what differs, then records those again.\n"
     "\n"
     "Exit codes: 0 all as recorded, or updated; 1 something differs; 2 usage; 3 a recording "
     "cannot\n"
@@ -112,7 +112,7 @@ class Corpus {
     return checked;
   }
 
-  /// Writes it anew, as the device is now.
+  /// Writes it again, as the device is now.
   [[nodiscard]] Outcome<void> update(const Checked& checked) const {
     if (how_ || checked.is_of_capture) return record_anew(checked.path);
     if (checked.path.ends_with(".json")) {
@@ -301,7 +301,7 @@ void add_captures(CLI::App& app, Devices devices, Action& action) {
   command->add_option("--shard", options->shard, "only one part of several, as in 2/4");
   command->add_option("--jobs", options->jobs, "so many at a time (default: one a processor)")
       ->transform(whole(1, 256));
-  command->add_flag("--update", options->updates, "write anew what differs");
+  command->add_flag("--update", options->updates, "record what differs again");
   add_report_files(*command, options->files);
   add_colour_option(*command, options->colour);
   command->callback([options, devices, &action] {

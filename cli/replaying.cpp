@@ -190,6 +190,21 @@ Outcome<const Device*> device_of(Devices devices, const std::string& path, const
   return device;
 }
 
+/// A session and whose it is.
+struct KnownSession {
+  Session session;
+  const Device* device;
+};
+
+Outcome<KnownSession> read_known_session(Devices devices, const std::string& path,
+                                         const ForeignHow& how) {
+  auto session = read_session(path, how);
+  if (!session) return tl::unexpected{session.error()};
+  return device_of(devices, path, *session).map([&](const Device* device) {
+    return KnownSession{*std::move(session), device};
+  });
+}
+
 /// Both sides as messages, and what differs.
 Outcome<ReplayedRecording> compared(Devices devices, const Session& session,
                                     const std::vector<KeptRecord>& expected,
@@ -218,46 +233,44 @@ void warn_of_patience(const HostSaid& said) {
 
 Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& path,
                                             const ReplayHow& how) {
-  const auto session = read_session(path, how.foreign);
-  if (!session) return tl::unexpected{session.error()};
-  const auto device = device_of(devices, path, *session);
-  if (!device) return tl::unexpected{device.error()};
+  const auto known = read_known_session(devices, path, how.foreign);
+  if (!known) return tl::unexpected{known.error()};
+  const auto& [session, device] = *known;
   PlayHow play_how{.speed = how.speed,
-                   .touches_of = (*device)->replay.touches_of,
+                   .touches_of = device->replay.touches_of,
                    .trailing = how.rules.time_tolerance};
   auto played = std::visit(
       [&](const auto& kind) {
-        if (kind.set_up != nullptr && !session->is_of_capture) play_how.lead = Duration{1};
-        return play(kind, **device, *session, like_recorded(kind, path, how.rig), play_how);
+        if (kind.set_up != nullptr && !session.is_of_capture) play_how.lead = Duration{1};
+        return play(kind, *device, session, like_recorded(kind, path, how.rig), play_how);
       },
-      (*device)->port);
+      device->port);
   if (!played) return tl::unexpected{played.error()};
-  auto replayed = compared(devices, *session, played->expected, played->actual, how.rules);
+  auto replayed = compared(devices, session, played->expected, played->actual, how.rules);
   if (!replayed) return replayed;
   replayed->left_out = std::move(played->left_out);
-  forgive_ends(*session, *played, how.rules.time_tolerance, replayed->found);
+  forgive_ends(session, *played, how.rules.time_tolerance, replayed->found);
   return replayed;
 }
 
 Outcome<ReplayedRecording> play_recorded_device(Devices devices, const std::string& path,
                                                 const ListenHow& how) {
-  const auto session = read_session(path, how.foreign);
-  if (!session) return tl::unexpected{session.error()};
-  const auto device = device_of(devices, path, *session);
-  if (!device) return tl::unexpected{device.error()};
-  auto serving = parse_listen(how.place, **device);
+  const auto known = read_known_session(devices, path, how.foreign);
+  if (!known) return tl::unexpected{known.error()};
+  const auto& [session, device] = *known;
+  auto serving = parse_listen(how.place, *device);
   if (!serving) return tl::unexpected{serving.error()};
   serving->wants_json = how.wants_json;
   serving->is_quiet = true;
-  auto [hosted, said] = play_device(session->link.kind, session->records,
+  auto [hosted, said] = play_device(session.link.kind, session.records,
                                     {.speed = how.speed,
                                      .trailing = how.rules.time_tolerance,
-                                     .make_dissector = (*device)->make_dissector});
+                                     .make_dissector = device->make_dissector});
   if (auto served = serve(std::move(hosted), *serving); !served) {
     return tl::unexpected{served.error()};
   }
   warn_of_patience(*said);
-  auto replayed = compared(devices, *session, said->expected, said->actual, how.rules);
+  auto replayed = compared(devices, session, said->expected, said->actual, how.rules);
   if (replayed) replayed->left_out = said->left_out;
   return replayed;
 }

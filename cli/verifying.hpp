@@ -24,10 +24,10 @@ struct Verified {
 [[nodiscard]] Outcome<Verified> verify_recording(const std::string& path, Devices devices);
 
 /// The text of a recording with what the emulator says now. Not of tables, nor of what `--capture`
-/// made, which is recorded anew. Problems: those of the file.
+/// made, which is recorded again. Problems: those of the file.
 [[nodiscard]] Outcome<std::string> renewed_recording(const std::string& path, Devices devices);
 
-/// The target of a recording of `--capture`, to record it anew. Problems: as for
+/// The target of a recording of `--capture`, to record it again. Problems: as for
 /// `emulated_target_of`.
 [[nodiscard]] Outcome<std::string> target_of_recording(const std::string& path);
 

@@ -58,8 +58,6 @@ class Counter {
 /// The recording on its way: what is said next, and what is waited for before.
 class Talk {
  public:
-  using Say = void (*)(void* self, Instant time, const KeptRecord& record);
-
   Talk(std::vector<KeptRecord> records, const DeviceRole& role) : role_{role} {
     std::map<std::uint32_t, Counter> counters;
     std::map<std::uint32_t, std::size_t> counts;
