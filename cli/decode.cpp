@@ -119,10 +119,6 @@ Direction direction_of(const DecodeOptions& options, MakeDissector make_dissecto
   return guess_direction(make_dissector, bytes);
 }
 
-double seconds(Instant time) {
-  return std::chrono::duration<double>{time.time_since_epoch()}.count();
-}
-
 bool is_wanted(const CaptureRecord& record, const DecodeOptions& options) {
   const auto kind = record.link->kind;
   const bool is_session = kind == LinkKind::kSession;

@@ -25,9 +25,8 @@ Outcome<std::unique_ptr<ProgramCheck>> make_program_check(const Device& device,
   return std::make_unique<ProgramCheck>(
       *device.program_check, noise, [lines](const Offence& offence) {
         if (++(*lines)[offence.requirement] > kMostLines) return;
-        fmt::print(stderr, "armjig: {:.3f} s {}: {}\n",
-                   std::chrono::duration<double>{offence.time.time_since_epoch()}.count(),
-                   offence.requirement, offence.what);
+        fmt::print(stderr, "armjig: {:.3f} s {}: {}\n", seconds(offence.time), offence.requirement,
+                   offence.what);
       });
 }
 

@@ -327,8 +327,7 @@ Exit info(const Reading& reading, const std::vector<std::string>& paths) {
       count.bytes += record.bytes.size();
     }
     fmt::print("{}", title_of(path, **reader));
-    fmt::print("{:<12} {:.6f} s\n", "length",
-               std::chrono::duration<double>{record.time.time_since_epoch()}.count());
+    fmt::print("{:<12} {:.6f} s\n", "length", seconds(record.time));
     for (const auto& [name, count] : links) {
       fmt::print("{:<12} {}: {} records, {} bytes\n", "link", wording::line(name), count.records,
                  count.bytes);
@@ -433,7 +432,7 @@ struct Copying {
   std::string device;
 
   [[nodiscard]] bool wants(const CaptureRecord& record) const {
-    const auto time = std::chrono::duration<double>{record.time.time_since_epoch()}.count();
+    const auto time = seconds(record.time);
     if (time < from || time > to) return false;
     const bool is_event = record.link->kind == LinkKind::kEvents;
     if (!device.empty() && record.link->device != device) return false;

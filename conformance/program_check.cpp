@@ -17,10 +17,6 @@ namespace {
 
 constexpr std::size_t kRemembered = 3;
 
-double seconds(Instant time) {
-  return std::chrono::duration<double>{time.time_since_epoch()}.count();
-}
-
 }  // namespace
 
 /// The one way by which the checker is shown anything.

@@ -230,36 +230,52 @@ class Talk {
   std::shared_ptr<HostSaid> said_ = std::make_shared<HostSaid>();
 };
 
-class PlayedStream final : public HostedStream {
+/// What speaks of its own accord: a device on a stream, or a server. `Said` is a thing that it
+/// sends.
+template <class Kind, class Said>
+class Played : public Kind {
  public:
-  explicit PlayedStream(Talk talk) : talk_{std::move(talk)} {}
+  explicit Played(Talk talk) : talk_{std::move(talk)} {}
+
+  void advance_to(Instant time) final {
+    now_ = time;
+    talk_.advance_to(time, [this](Instant at, const KeptRecord& record) { say(at, record); });
+  }
+  [[nodiscard]] std::optional<Instant> next_event() const final { return talk_.next_event(); }
+  [[nodiscard]] bool set_input(Instant, std::string_view, std::int64_t) final { return false; }
+  [[nodiscard]] std::span<const Said> sent() const final { return sent_; }
+  void clear_sent() final { sent_.clear(); }
+  [[nodiscard]] bool is_gone() const final { return sent_.empty() && talk_.is_over(now_); }
+
+ protected:
+  virtual void say(Instant time, const KeptRecord& record) = 0;
+
+  Talk talk_;
+  std::vector<Said> sent_;
+
+ private:
+  Instant now_{};
+};
+
+class PlayedStream final : public Played<HostedStream, SentBytes> {
+ public:
+  using Played::Played;
 
   void receive(Instant time, Bytes bytes) override {
     advance_to(time);
     talk_.hear(time, {.kind = LinkKind::kStream, .direction = Direction::kToDevice}, bytes);
   }
-  void advance_to(Instant time) override {
-    now_ = time;
-    talk_.advance_to(time, [this](Instant at, const KeptRecord& record) {
-      sent_.push_back({at, record.bytes});
-    });
-  }
-  [[nodiscard]] std::optional<Instant> next_event() const override { return talk_.next_event(); }
-  [[nodiscard]] bool set_input(Instant, std::string_view, std::int64_t) override { return false; }
-  [[nodiscard]] std::span<const SentBytes> sent() const override { return sent_; }
-  void clear_sent() override { sent_.clear(); }
-  [[nodiscard]] bool is_gone() const override { return sent_.empty() && talk_.is_over(now_); }
 
  private:
-  Talk talk_;
-  Instant now_{};
-  std::vector<SentBytes> sent_;
+  void say(Instant time, const KeptRecord& record) override {
+    sent_.push_back({time, record.bytes});
+  }
 };
 
-class PlayedServer final : public HostedServer {
+class PlayedServer final : public Played<HostedServer, ServerEvent> {
  public:
   PlayedServer(Talk talk, std::vector<std::uint32_t> connections)
-      : talk_{std::move(talk)}, connections_{std::move(connections)} {}
+      : Played{std::move(talk)}, connections_{std::move(connections)} {}
 
   [[nodiscard]] bool is_listening() const override { return true; }
   [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {
@@ -290,23 +306,13 @@ class PlayedServer final : public HostedServer {
   void reset(Instant time, ConnectionId number) override { end(time, number, "client-reset"); }
   [[nodiscard]] std::size_t unread(ConnectionId) const override { return 0; }
 
-  void advance_to(Instant time) override {
-    now_ = time;
-    talk_.advance_to(time, [this](Instant at, const KeptRecord& record) { say(at, record); });
-  }
-  [[nodiscard]] std::optional<Instant> next_event() const override { return talk_.next_event(); }
-  [[nodiscard]] bool set_input(Instant, std::string_view, std::int64_t) override { return false; }
-  [[nodiscard]] std::span<const ServerEvent> sent() const override { return sent_; }
-  void clear_sent() override { sent_.clear(); }
-  [[nodiscard]] bool is_gone() const override { return sent_.empty() && talk_.is_over(now_); }
-
  private:
   void end(Instant time, ConnectionId number, std::string_view how) {
     advance_to(time);
     if (ended_.contains(number)) return;
     talk_.note_border(time, ids_[number], "disconnect", how);
   }
-  void say(Instant time, const KeptRecord& record) {
+  void say(Instant time, const KeptRecord& record) override {
     const bool is_end = record.kind == LinkKind::kEvents;
     const auto id = is_end ? static_cast<std::uint32_t>(number_in(record, "conn", 0)) : record.id;
     const auto number = numbers_.find(id);
@@ -318,15 +324,12 @@ class PlayedServer final : public HostedServer {
     sent_.push_back({time, number->second, kind, is_end ? std::vector<std::byte>{} : record.bytes});
   }
 
-  Talk talk_;
   std::vector<std::uint32_t> connections_;  ///< of the recording, in the order in which they began
   std::uint32_t connected_ = 0;
   ConnectionId next_ = 0;
   std::map<std::uint32_t, ConnectionId> numbers_;
   std::map<ConnectionId, std::uint32_t> ids_;
   std::set<ConnectionId> ended_;
-  Instant now_{};
-  std::vector<ServerEvent> sent_;
 };
 
 /// All addresses of a recorded bus. Copies play the same recording on.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/capture/capture.hpp"
@@ -34,7 +35,14 @@ struct KeptRecord {
   }
 };
 
-/// A member of its details, which are JSON; empty, or `otherwise`, if there is no such one.
+/// A member of an event, which is JSON; empty, or `otherwise`, if there is no such one.
+[[nodiscard]] std::string text_in(std::string_view event, const char* key);
+[[nodiscard]] double real_in(std::string_view event, const char* key, double otherwise);
+/// Rounded, if it is not whole.
+[[nodiscard]] std::int64_t number_in(std::string_view event, const char* key,
+                                     std::int64_t otherwise);
+
+/// The same of a record's details.
 [[nodiscard]] std::string text_in(const KeptRecord& record, const char* key);
 [[nodiscard]] std::int64_t number_in(const KeptRecord& record, const char* key,
                                      std::int64_t otherwise);

@@ -14,6 +14,7 @@
 
 #include "emulators/kinovazed/defects/defective_server.hpp"
 #include "emulators/kinovazed/server.hpp"
+#include "emulators/replay/kept_record.hpp"
 #include "emulators/replay/kinovazed_rules.hpp"
 #include "emulators/replay/wrong_key.hpp"
 #include "harness/core/hex.hpp"
@@ -377,23 +378,14 @@ Outcome<DefectiveServer> set_up(const Trace& recording) {
 }
 
 DeviceTouches touches_of(std::string_view event) {
-  const auto json = Json::parse(event, nullptr, /*allow_exceptions=*/false);
-  const auto text = [&json](const char* key) {
-    const auto value = json.value(key, Json{});
-    return value.is_string() ? value.get<std::string>() : std::string{};
-  };
-  const auto number = [&json](const char* key, double otherwise) {
-    const auto value = json.value(key, Json{});
-    return value.is_number() ? value.get<double>() : otherwise;
-  };
-  if (text("dir") != "arm") return {};
-  const auto what = text("event");
+  if (text_in(event, "dir") != "arm") return {};
+  const auto what = text_in(event, "event");
   if (what == "plug") return {{"arm.plugged", 1}};
   if (what == "unplug") return {{"arm.plugged", 0}};
-  if (what == "mode") return {{"arm.mode", std::llround(number("value", 0))}};
-  if (what == "current") return {{"arm.current", std::llround(number("value", 0) * 1000)}};
-  if (what == "fail" && number("skip", 0) == 0) {
-    return {{"arm.fail." + text("call"), std::llround(number("count", 1))}};
+  if (what == "mode") return {{"arm.mode", number_in(event, "value", 0)}};
+  if (what == "current") return {{"arm.current", std::llround(real_in(event, "value", 0) * 1000)}};
+  if (what == "fail" && number_in(event, "skip", 0) == 0) {
+    return {{"arm.fail." + text_in(event, "call"), number_in(event, "count", 1)}};
   }
   DeviceTouches touches;
   if (what == "clear_failures") {

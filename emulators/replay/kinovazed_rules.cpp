@@ -11,9 +11,7 @@ namespace {
 using Events = std::vector<TraceEvent>;
 using Difference = std::optional<TraceDifference>;
 
-std::string_view text_of(const TraceEvent& event) {
-  return {reinterpret_cast<const char*>(event.bytes.data()), event.bytes.size()};
-}
+std::string_view text_of(const TraceEvent& event) { return as_text(event.bytes); }
 
 bool is_beat(const TraceEvent& event) { return text_of(event).starts_with("Heartbeat:"); }
 

@@ -15,6 +15,7 @@
 #include "emulators/morap/defects/defects.hpp"
 #include "emulators/morap/node.hpp"
 #include "emulators/morap/pen.hpp"
+#include "emulators/replay/kept_record.hpp"
 #include "emulators/replay/wrong_key.hpp"
 #include "harness/core/hex.hpp"
 
@@ -321,12 +322,8 @@ Outcome<i2c::Bus> set_up(const Trace& recording) {
 }
 
 DeviceTouches touches_of(std::string_view event) {
-  const auto json = Json::parse(event, nullptr, /*allow_exceptions=*/false);
-  const auto what = json.value("op", std::string{});
-  const auto number = [&json](const char* key) {
-    const auto value = json.value(key, Json{});
-    return value.is_number_integer() ? value.get<std::int64_t>() : std::int64_t{};
-  };
+  const auto what = text_in(event, "op");
+  const auto number = [event](const char* key) { return number_in(event, key, 0); };
   if (what == "adc") return {{"adc", number("value")}};
   if (what == "encoder") return {{"encoder", number("delta")}};
   if (what == "restart") return {{"power", 1}};
@@ -351,7 +348,7 @@ std::string write(std::string_view line, const TraceEvent& actual) {
     json["led1"] = std::stoi(next());
     json["led2"] = std::stoi(next());
     const auto printed = from_hex(next()).value_or(std::vector<std::byte>{});
-    json["serial"] = std::string{reinterpret_cast<const char*>(printed.data()), printed.size()};
+    json["serial"] = as_text(printed);
   } else {
     json["ack"] = next();
     if (actual.dir.starts_with("read")) json["hex"] = to_hex(actual.bytes);

@@ -50,10 +50,6 @@ void put(std::vector<std::byte>& out, Bytes bytes) {
 
 Bytes bytes_of(std::string_view text) { return std::as_bytes(std::span{text}); }
 
-std::string_view text_of(Bytes bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 std::uint32_t u32(Bytes in) {
   return std::uint32_t{load_u16_be(in.first<2>())} << 16U | load_u16_be(in.subspan(2).first<2>());
 }
@@ -212,7 +208,7 @@ std::optional<UpperPdu> parse_upper_pdu(Bytes data) {
       return found;
     }
     if (tag == kDissectorName) {
-      pdu.dissector = text_of(value);
+      pdu.dissector = as_text(value);
       pdu.dissector = pdu.dissector.substr(0, pdu.dissector.find('\0'));
     }
     if (tag == kSourcePort && size == 4) pdu.source = u32(value);
@@ -389,7 +385,7 @@ class PacketCaptureReader final : public CaptureReader {
     record.link = &link;
     record.direction =
         packet_.flow == Flow::kInbound ? Direction::kFromDevice : Direction::kToDevice;
-    if (pdu && link.kind == LinkKind::kEvents) return take_event(record, text_of(pdu->bytes));
+    if (pdu && link.kind == LinkKind::kEvents) return take_event(record, as_text(pdu->bytes));
     if (pdu) {
       // Copying both halves of `pdu->bytes`, which were just written, would stall the processor.
       record.bytes = packet_.data.last(pdu->bytes.size());

@@ -90,10 +90,6 @@ std::size_t whole_letters(std::string_view text, std::size_t most) {
   return size > 0 ? size : most;
 }
 
-std::string text_of(Bytes bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 constexpr std::array<std::int64_t, 19> powers_of_ten() {
   std::array<std::int64_t, 19> powers{1};
   for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = powers[i - 1] * 10;
@@ -162,7 +158,7 @@ void append_packet(std::string& out, const Packet& packet) {
   put_u32(out, time & 0xFFFFFFFF);
   put_u32(out, packet.data.size());
   put_u32(out, packet.data.size());
-  put_padded(out, {reinterpret_cast<const char*>(packet.data.data()), packet.data.size()});
+  put_padded(out, as_text(packet.data));
   if (packet.flow == Flow::kUnknown) return;
   put_u16(out, kFlags);
   put_u16(out, 4);
@@ -264,7 +260,7 @@ Outcome<void> Reader::take_section() {
   if (body_.size() < kFixed) return malformed("it is too short for a section");
   if (u16(body_.subspan(4)) != 1) return malformed("the version of the format is not 1");
   const auto is_sound = each_option(body_.subspan(kFixed), [this](auto option, Bytes value) {
-    if (option == kComment && is_first_section_) comment_ += text_of(value);
+    if (option == kComment && is_first_section_) comment_ += as_text(value);
   });
   if (!is_sound) return malformed("an option is longer than the block");
   is_first_section_ = false;
@@ -282,8 +278,8 @@ Outcome<void> Reader::take_interface() {
   interface.link_type = u16(body_);
   interface.is_little_endian = is_little_endian_;
   const auto is_sound = each_option(body_.subspan(kFixed), [&](auto option, Bytes value) {
-    if (option == kComment) interface.comment += text_of(value);
-    if (option == kName) interface.name = text_of(value);
+    if (option == kComment) interface.comment += as_text(value);
+    if (option == kName) interface.name = as_text(value);
     if (option == kResolution && !value.empty()) {
       interface.resolution = std::to_integer<std::uint8_t>(value.front());
     }

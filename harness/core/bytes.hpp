@@ -7,10 +7,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace armjig {
 
 using Bytes = std::span<const std::byte>;
+
+/// The same bytes as characters, whatever they are.
+[[nodiscard]] inline std::string_view as_text(Bytes bytes) noexcept {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 /// Reads a signed 24-bit big-endian field.
 [[nodiscard]] constexpr std::int32_t load_i24_be(std::span<const std::byte, 3> in) noexcept {

@@ -28,4 +28,9 @@ using Instant = VirtualClock::time_point;
   return std::chrono::floor<std::chrono::microseconds>(t.time_since_epoch()).count();
 }
 
+/// Since the start, for people.
+[[nodiscard]] constexpr double seconds(Instant t) noexcept {
+  return std::chrono::duration<double>{t.time_since_epoch()}.count();
+}
+
 }  // namespace armjig

@@ -40,7 +40,9 @@ std::uint32_t u32(Bytes in, std::size_t at) {
 
 std::uint8_t u8(Bytes in, std::size_t at) { return std::to_integer<std::uint8_t>(in[at]); }
 
-std::string text_of(Bytes in) { return {reinterpret_cast<const char*>(in.data()), in.size()}; }
+std::string address_of(Bytes ip, Bytes port) {
+  return fmt::format("{}{}", as_text(ip), as_text(port));
+}
 
 /// A packet of IP, and whether there is one.
 using Inner = tl::expected<Bytes, NotTcp>;
@@ -147,8 +149,8 @@ tl::expected<TcpSegment, NotTcp> parse_tcp(std::uint16_t link_type, Bytes packet
   if (tcp.size() < kHeader) return unexpected{NotTcp::kMalformed};
   const std::size_t header = std::size_t{u8(tcp, 12)} / 16 * 4;
   if (header < kHeader || tcp.size() < header) return unexpected{NotTcp::kMalformed};
-  return TcpSegment{.source = text_of(ip->source) + text_of(tcp.first(2)),
-                    .destination = text_of(ip->destination) + text_of(tcp.subspan(2, 2)),
+  return TcpSegment{.source = address_of(ip->source, tcp.first(2)),
+                    .destination = address_of(ip->destination, tcp.subspan(2, 2)),
                     .source_port = u16(tcp, 0),
                     .destination_port = u16(tcp, 2),
                     .sequence = u32(tcp, 4),

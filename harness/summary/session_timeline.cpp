@@ -24,10 +24,6 @@ constexpr std::size_t kMostLetters = 600;  // of a message
 /// Equal commands that come faster than this are one that goes on.
 constexpr Duration kPause = 500ms;
 
-double seconds(Instant time) noexcept {
-  return std::chrono::duration<double>{time.time_since_epoch()}.count();
-}
-
 /// Whether the number says how much of something there is.
 bool is_quantity(const Field& field) noexcept {
   switch (field.encoding) {

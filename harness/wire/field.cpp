@@ -13,7 +13,7 @@ namespace {
 
 /// The piece of that number, without the line end.
 std::string_view piece(Bytes message, std::size_t number) {
-  std::string_view line{reinterpret_cast<const char*>(message.data()), message.size()};
+  auto line = as_text(message);
   line = line.substr(0, line.find_first_of("\r\n"));
   for (; number > 0; --number) line.remove_prefix(std::min(line.find(':'), line.size() - 1) + 1);
   return line.substr(0, line.find(':'));

@@ -8,10 +8,6 @@
 namespace armjig::kinovazed::emulation {
 namespace {
 
-std::string_view text_of(Bytes bytes) noexcept {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 constexpr std::string_view kFail = "arm.fail.";
 constexpr std::string_view kJoystick = "arm.joystick.";
 /// Translation first, then the wrist.
@@ -63,7 +59,7 @@ std::optional<ConnectionId> DefectiveServer::connect(Instant time) {
 void DefectiveServer::receive(Instant time, ConnectionId id, Bytes segment) {
   if (!is_known(id)) return;
   if (quirks_.empty()) return server_.receive(inner(time), id - first_id_, segment);
-  std::string heard{text_of(segment)};
+  std::string heard{as_text(segment)};
   for (std::size_t i = 0; i < quirks_.size(); ++i) {
     if (quirks_[i].hear) quirks_[i].hear(heard, memories_[i], server_.state());
   }
@@ -129,7 +125,7 @@ void DefectiveServer::take(ServerEvent event) {
     later_.insert(std::ranges::upper_bound(later_, event.time, {}, &ServerEvent::time), event);
     return;
   }
-  Saying saying{.text = std::string{text_of(event.bytes)}, .time = event.time};
+  Saying saying{.text = std::string{as_text(event.bytes)}, .time = event.time};
   for (std::size_t i = 0; i < quirks_.size(); ++i) {
     if (quirks_[i].say) quirks_[i].say(saying, memories_[i], server_.state());
   }
