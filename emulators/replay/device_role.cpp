@@ -233,9 +233,9 @@ class Talk {
 /// What speaks of its own accord: a device on a stream, or a server. `Said` is a thing that it
 /// sends.
 template <class Kind, class Said>
-class Played : public Kind {
+class SpeakingAs : public Kind {
  public:
-  explicit Played(Talk talk) : talk_{std::move(talk)} {}
+  explicit SpeakingAs(Talk talk) : talk_{std::move(talk)} {}
 
   void advance_to(Instant time) final {
     now_ = time;
@@ -257,9 +257,9 @@ class Played : public Kind {
   Instant now_{};
 };
 
-class PlayedStream final : public Played<HostedStream, SentBytes> {
+class PlayedStream final : public SpeakingAs<HostedStream, SentBytes> {
  public:
-  using Played::Played;
+  using SpeakingAs::SpeakingAs;
 
   void receive(Instant time, Bytes bytes) override {
     advance_to(time);
@@ -272,10 +272,10 @@ class PlayedStream final : public Played<HostedStream, SentBytes> {
   }
 };
 
-class PlayedServer final : public Played<HostedServer, ServerEvent> {
+class PlayedServer final : public SpeakingAs<HostedServer, ServerEvent> {
  public:
   PlayedServer(Talk talk, std::vector<std::uint32_t> connections)
-      : Played{std::move(talk)}, connections_{std::move(connections)} {}
+      : SpeakingAs{std::move(talk)}, connections_{std::move(connections)} {}
 
   [[nodiscard]] bool is_listening() const override { return true; }
   [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <random>
 #include <ranges>
 #include <vector>
+
+#include "harness/core/bytes.hpp"
 
 namespace armjig::sessions {
 
@@ -17,11 +20,18 @@ namespace armjig::sessions {
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_{seed} {}
+  /// Loaded: what falls is in these bytes, as many for each draw as its choices need. They outlive
+  /// the dice. Behind them it is chance again, the same each time.
+  explicit Dice(Bytes choices) : is_loaded_{true}, choices_{choices} {}
+
+  /// Loaded, and all bytes are used up.
+  [[nodiscard]] bool is_over() const noexcept { return is_loaded_ && choices_.empty(); }
 
   /// From `least` to `most`, both included.
   [[nodiscard]] std::int64_t between(std::int64_t least, std::int64_t most) {
     const auto choices = static_cast<std::uint64_t>(most) - static_cast<std::uint64_t>(least) + 1;
-    const auto drawn = choices == 0 ? engine_() : engine_() % choices;
+    const auto any = choices_.empty() ? engine_() : take((std::bit_width(choices - 1) + 7) / 8);
+    const auto drawn = choices == 0 ? any : any % choices;
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(least) + drawn);
   }
   /// The same in the type that is wanted.
@@ -60,6 +70,17 @@ class Dice {
   }
 
  private:
+  /// The next so many bytes as a number.
+  [[nodiscard]] std::uint64_t take(std::size_t size) {
+    std::uint64_t number = 0;
+    const auto taken = choices_.first(std::min(size, choices_.size()));
+    for (const auto byte : taken) number = number << 8 | std::to_integer<std::uint64_t>(byte);
+    choices_ = choices_.subspan(taken.size());
+    return number;
+  }
+
+  bool is_loaded_ = false;
+  Bytes choices_;
   std::mt19937_64 engine_;
 };
 

@@ -371,6 +371,6 @@ constexpr auto kThemes = std::to_array<Theme<Session>>({{"static", 8, 5'000, 2'5
 
 }  // namespace
 
-std::string draw(std::uint64_t seed) { return play<Session>(seed, kThemes); }
+std::string draw(const Roll& roll) { return play<Session>(roll, kThemes); }
 
 }  // namespace armjig::morap::sessions

@@ -383,6 +383,6 @@ constexpr auto kThemes =
 
 }  // namespace
 
-std::string draw(std::uint64_t seed) { return play<Session>(seed, kThemes); }
+std::string draw(const Roll& roll) { return play<Session>(roll, kThemes); }
 
 }  // namespace armjig::parol6::sessions

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -11,6 +12,8 @@
 #include <utility>
 
 #include "emulators/sessions/dice.hpp"
+#include "emulators/sessions/sessions.hpp"
+#include "harness/core/time.hpp"
 
 /// Sessions drawn at random, as text in the format `golden-trace/1`: a header and everything that
 /// is done to the device, and nothing that it does.
@@ -86,14 +89,16 @@ class Draft {
   std::string lines_;
 };
 
-/// The session of that seed. `Session` is a draft, and ends with `finish`, which gives the text.
+/// The session that falls, of at most `longest` and little more. `Session` is a draft, and ends
+/// with `finish`, which gives the text.
 template <class Session>
-[[nodiscard]] std::string play(std::uint64_t seed, std::span<const Theme<Session>> themes) {
-  Dice dice{seed};
+[[nodiscard]] std::string play(const Roll& roll, std::span<const Theme<Session>> themes) {
+  auto dice = roll.dice;
   const auto& theme = dice.weighted(themes, &Theme<Session>::weight);
-  const auto end = dice.mostly_low(theme.shortest_us, theme.longest_us);
-  Session session{Draft::Start{dice, theme.name, seed}};
-  while (session.now_us() < end) {
+  const auto length = dice.mostly_low(theme.shortest_us, theme.longest_us);
+  const auto end = std::min(length, microseconds(at(roll.longest)));
+  Session session{Draft::Start{dice, theme.name, roll.seed}};
+  while (session.now_us() < end && !dice.is_over()) {
     std::invoke(dice.weighted(theme.deeds, &Deed<Session>::weight).act, session);
   }
   return session.finish();

@@ -28,8 +28,8 @@ inline constexpr std::array kDrawnDevices{
     DrawnDevice{"kinovazed", kinovazed::sessions::draw, 0x89AEF6F3D35BB976U}};
 
 [[nodiscard]] inline Outcome<std::string> recording_of(const DrawnDevice& device,
-                                                       std::uint64_t seed) {
-  return parse_trace("drawn", device.draw(seed)).and_then([](const Trace& stimulus) {
+                                                       const Roll& roll) {
+  return parse_trace("drawn", device.draw(roll)).and_then([](const Trace& stimulus) {
     return record(stimulus, recorded_device(stimulus)->replay);
   });
 }
@@ -40,10 +40,10 @@ inline constexpr std::array kDrawnDevices{
   return describe(*difference, trace, recorded_device(trace)->make_dissector);
 }
 
-/// What is wrong with the recording of a seed; empty if it verifies.
+/// What is wrong with the recording of a session; empty if it verifies.
 [[nodiscard]] inline std::string complaint_about_recording(const DrawnDevice& device,
-                                                           std::uint64_t seed) {
-  const auto text = recording_of(device, seed);
+                                                           const Roll& roll) {
+  const auto text = recording_of(device, roll);
   if (!text) return describe(text.error());
   const auto trace = parse_trace("drawn", *text);
   if (!trace) return describe(trace.error());
@@ -54,8 +54,8 @@ inline constexpr std::array kDrawnDevices{
 /// Where the emulator and its plain model differ in a session; empty if they do not, or if there is
 /// no such model.
 [[nodiscard]] inline std::string complaint_about_plain_model(const DrawnDevice& device,
-                                                             std::uint64_t seed) {
-  const auto stimulus = parse_trace("drawn", device.draw(seed));
+                                                             const Roll& roll) {
+  const auto stimulus = parse_trace("drawn", device.draw(roll));
   if (!stimulus) return describe(stimulus.error());
   const auto& replay = recorded_device(*stimulus)->replay;
   if (replay.run_plainly == nullptr) return "";

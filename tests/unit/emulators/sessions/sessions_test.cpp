@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "tests/unit/emulators/sessions/drawn_session.hpp"
 
@@ -42,6 +44,33 @@ TEST_P(Sessions, AreTheSameInThePlainModel) {
   for (std::uint64_t seed = 1000; seed < 1025; ++seed) {
     EXPECT_EQ(complaint_about_plain_model(GetParam(), seed), "") << "seed " << seed;
   }
+}
+
+/// Bytes that a fuzzer may give.
+std::vector<std::byte> choices(std::uint64_t seed, std::size_t size) {
+  sessions::Dice dice{seed};
+  return dice.bytes(static_cast<std::int64_t>(size), static_cast<std::int64_t>(size));
+}
+
+TEST_P(Sessions, AreWhatFellIfTheDiceAreLoaded) {
+  std::set<std::string> texts;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto bytes = choices(seed, 200);
+    const auto text = GetParam().draw(Roll{bytes, std::chrono::seconds{5}});
+    EXPECT_EQ(text, GetParam().draw(Roll{bytes, std::chrono::seconds{5}}));
+    EXPECT_EQ(complaint_about_recording(GetParam(), Roll{bytes, std::chrono::seconds{5}}), "");
+    texts.insert(text);
+  }
+  EXPECT_EQ(texts.size(), 20U);
+}
+
+TEST_P(Sessions, GrowWithTheBytesThatSayThem) {
+  const auto bytes = choices(1, 400);
+  const auto lines_of = [&](std::size_t size) {
+    return std::ranges::count(GetParam().draw(Roll{Bytes{bytes}.first(size), Duration::max()}),
+                              '\n');
+  };
+  EXPECT_LT(lines_of(40), lines_of(400));
 }
 
 /// In that session a message came in the very moment of the client's next line.

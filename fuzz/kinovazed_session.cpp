@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole sessions with the emulated server: clients that come, go and half-close, its arm and its
+// deaths.
+//
+// Input: what falls when a session is drawn (`Roll`).
+#include "fuzz/session.hpp"
+
+// NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer calls
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace std::chrono_literals;
+  armjig::fuzz::check_session(armjig::test::kDrawnDevices[2], {data, size}, 20s);
+  return 0;
+}
