@@ -52,11 +52,12 @@ function(armjig_document_lines name)
   target_sources(armjig_${name} PRIVATE ${table})
 endfunction()
 
-# armjig_library(NAME SOURCES folder... [ONLY name... | EXCEPT name...] [EMBEDDABLE] [EXACT_FLOATS]
-#                [PUBLIC target...] [PRIVATE target...] [HEADERS_OF target...])
+# armjig_library(NAME SOURCES folder... [ONLY name... | EXCEPT name...] [INSTALLED header...]
+#                [EMBEDDABLE] [EXACT_FLOATS] [PUBLIC target...] [PRIVATE target...] [HEADERS_OF target...])
 #
 # The library armjig_NAME, exported as armjig::NAME, of all sources and headers in those folders, or
-# of those among them that are called so (without .cpp and .hpp), or not called so. EMBEDDABLE puts
+# of those among them that are called so (without .cpp and .hpp), or not called so. All headers are
+# installed, or those of INSTALLED (without .hpp), which include no others. EMBEDDABLE puts
 # it into the package that needs neither Boost nor an operating system (component embedded), else it
 # is in the whole (component dev).
 # Headers are included from the root of the tree. EXACT_FLOATS forbids fused multiply-add, which the
@@ -64,7 +65,7 @@ endfunction()
 # not show: whoever links to us later does not need them.
 function(armjig_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "EMBEDDABLE;EXACT_FLOATS" ""
-                        "SOURCES;ONLY;EXCEPT;PUBLIC;PRIVATE;HEADERS_OF")
+                        "SOURCES;ONLY;EXCEPT;INSTALLED;PUBLIC;PRIVATE;HEADERS_OF")
   list(TRANSFORM arg_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/)
   list(TRANSFORM arg_SOURCES APPEND /*.cpp OUTPUT_VARIABLE sources)
   list(TRANSFORM arg_SOURCES APPEND /*.hpp OUTPUT_VARIABLE headers)
@@ -80,6 +81,10 @@ function(armjig_library name)
       list(FILTER sources EXCLUDE REGEX "/(${except})\\.cpp$")
       list(FILTER headers EXCLUDE REGEX "/(${except})\\.hpp$")
     endif()
+  endif()
+  if(arg_INSTALLED)
+    list(JOIN arg_INSTALLED "|" installed)
+    list(FILTER headers INCLUDE REGEX "/(${installed})\\.hpp$")
   endif()
   list(TRANSFORM arg_HEADERS_OF REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
   add_library(armjig_${name} STATIC ${sources})

@@ -7,6 +7,6 @@
 // NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer calls
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace std::chrono_literals;
-  armjig::fuzz::check_session(armjig::test::kDrawnDevices[1], {data, size}, 200ms);
+  armjig::fuzz::check_session(armjig::test::kDrawnDevices[1], {data, size}, 1s);
   return 0;
 }
