@@ -10,20 +10,20 @@
 #include "harness/wire/kinovazed/line.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
-namespace armjig::fuzz {
+namespace armjig::fuzz::mutating {
 namespace {
 
-using Input = std::vector<std::uint8_t>;
+using RawInput = std::vector<std::uint8_t>;
 
 constexpr std::size_t kMost = 1024;
 
-Input input_of(Bytes stream) {
-  Input input{0};
+RawInput input_of(Bytes stream) {
+  RawInput input{0};
   for (const auto byte : stream) input.push_back(std::to_integer<std::uint8_t>(byte));
   return input;
 }
 
-Input some_frames() {
+RawInput some_frames() {
   std::vector<std::byte> stream;
   for (const auto code : {parol6::Command::kIdle, parol6::Command::kJog, parol6::Command::kGoTo}) {
     const auto frame = encode(parol6::CommandFrame{.command = code});
@@ -32,7 +32,7 @@ Input some_frames() {
   return input_of(stream);
 }
 
-Input some_lines() {
+RawInput some_lines() {
   constexpr std::string_view kLines = "EStop\r\nMoveJoystick:1:2:3\r\n";
   return input_of(std::as_bytes(std::span{kLines}));
 }
@@ -40,14 +40,14 @@ Input some_lines() {
 /// Leaves it as it is.
 std::size_t nothing(std::uint8_t* /*data*/, std::size_t size, std::size_t /*most*/) { return size; }
 
-Input mutated(const InputForm& form, Input input, std::uint64_t seed) {
+RawInput mutated(const InputForm& form, RawInput input, std::uint64_t seed) {
   const auto size = input.size();
   input.resize(kMost);
   input.resize(MessageMutator{form, nothing}.mutate(input.data(), size, kMost, seed));
   return input;
 }
 
-std::vector<Message> messages_of(const InputForm& form, const Input& input) {
+std::vector<Message> messages_of(const InputForm& form, const RawInput& input) {
   std::vector<Message> messages;
   const auto dissector = form.make_dissector();
   dissector->feed(Direction::kToDevice, {}, std::as_bytes(std::span{input}.subspan(1)), messages);
@@ -61,7 +61,7 @@ struct Tally {
   int broken{};
 };
 
-Tally tally_of(const InputForm& form, const Input& input) {
+Tally tally_of(const InputForm& form, const RawInput& input) {
   Tally tally;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto one = mutated(form, input, seed);
@@ -114,4 +114,4 @@ TEST(MessageMutator, KeepsWithinTheRoomThatThereIs) {
 }
 
 }  // namespace
-}  // namespace armjig::fuzz
+}  // namespace armjig::fuzz::mutating
