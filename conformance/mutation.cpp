@@ -24,15 +24,20 @@ constexpr Profile kShipped = Profile::kFirmware;
 
 using Cases = std::vector<const Case*>;
 
-RigOptions target_with(std::string_view fault, Profile profile) {
+/// The emulated device with all that its suite is about, and a fault if there is one.
+std::string target_of(std::string_view equipment, std::string_view fault) {
+  std::string text{"emulated:"};
+  if (!equipment.empty()) text.append("?").append(equipment);
+  if (!fault.empty()) text.append(equipment.empty() ? "?" : "&").append("fault=").append(fault);
+  return text;
+}
+
+RigOptions target_with(std::string_view equipment, std::string_view fault, Profile profile) {
   RigOptions how;
-  how.target.scheme = "emulated";
-  how.target.text = fmt::format("emulated:?profile={}", to_string(profile));
+  how.target = *parse_target(target_of(equipment, {}));
+  how.target.text = target_of(equipment, fault);
   how.target.options["profile"] = to_string(profile);
-  if (!fault.empty()) {
-    how.target.text += fmt::format("&fault={}", fault);
-    how.target.options["fault"] = fault;
-  }
+  if (!fault.empty()) how.target.options["fault"] = fault;
   how.permissions = Permissions::all();
   return how;
 }
@@ -98,6 +103,7 @@ class Mutation {
       : suite_{suite}, entry_{entry}, open_{open}, options_{options} {}
 
   Outcome<MutationResult> run() {
+    result_.equipment = entry_.equipment;
     if (auto tried = try_sound(); !tried) return tl::unexpected{tried.error()};
     for (auto& mutant : mutants_of(entry_, options_.profile)) {
       if (mutant.name.find(options_.filter) == std::string::npos) continue;
@@ -131,7 +137,7 @@ class Mutation {
   }
 
   [[nodiscard]] Outcome<Trial> open(std::string_view fault, Profile profile) const {
-    auto bench = open_(target_with(fault, profile));
+    auto bench = open_(target_with(entry_.equipment, fault, profile));
     if (!bench) return tl::unexpected{bench.error()};
     return Trial{*std::move(bench), profile};
   }
@@ -278,7 +284,8 @@ class Mutation {
   MutationResult result_;
 };
 
-ReportRow row_of(const MutantFate& fate, const Suite& suite, const MutationOptions& options) {
+ReportRow row_of(const MutantFate& fate, const Suite& suite, std::string_view equipment,
+                 const MutationOptions& options) {
   const auto& mutant = fate.mutant;
   const bool is_killed = !fate.killer.empty();
   const bool is_expected = is_killed == mutant.equivalent.empty();
@@ -296,8 +303,8 @@ ReportRow row_of(const MutantFate& fate, const Suite& suite, const MutationOptio
     row.verdict = Verdict::kSkipped;
     row.actual = "the run was interrupted";
   }
-  row.repeat = fmt::format("armjig conformance {} --target 'emulated:?fault={}' --profile {}",
-                           suite.device, mutant.name, to_string(options.profile));
+  row.repeat = fmt::format("armjig conformance {} --target '{}' --profile {}", suite.device,
+                           target_of(equipment, mutant.name), to_string(options.profile));
   return row;
 }
 
@@ -363,7 +370,8 @@ Report to_report(const MutationResult& result, const Suite& suite, const Mutatio
     row.actual = "it fails, and was left out";
     report.rows.push_back(std::move(row));
   }
-  for (const auto& fate : result.fates) report.rows.push_back(row_of(fate, suite, options));
+  for (const auto& fate : result.fates)
+    report.rows.push_back(row_of(fate, suite, result.equipment, options));
   for (const auto* requirement : result.unproven) {
     ReportRow row;
     row.verdict = Verdict::kFail;

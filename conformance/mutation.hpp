@@ -43,6 +43,8 @@ struct MutantsEntry {
   std::vector<NamedFault> (*faults)();
   std::span<const EquivalentFault> equivalents;
   std::span<const SectionHints> hints;  ///< for the speed alone
+  /// Options of the emulated device that has all that the suite is about: `pen=yes`; may be empty.
+  std::string_view equipment{};
 };
 
 /// One for each fault, in the order of the device's list.
@@ -75,6 +77,7 @@ struct MutationResult {
   std::vector<MutantFate> fates;             ///< in the order of `mutants_of`
   std::vector<std::string> broken_on_sound;  ///< cases that fail without any fault
   std::vector<const Requirement*> unproven;  ///< musts that no mutant breaks
+  std::string_view equipment{};              ///< that of its entry
 };
 
 /// Runs cases on each mutant until one finds it: those that the section hints at first, then what

@@ -35,6 +35,14 @@ class PortBench : public Bench {
     skip(std::string{"needs a hand at the device, to set "}.append(input));
   }
 
+  /// What is to be seen at the device; skips the case where nobody looks.
+  [[nodiscard]] std::int64_t observe(std::string_view output) {
+    if (is_deaf()) return 0;
+    const auto seen = port().observe(output);
+    if (!seen) skip(std::string{"needs somebody who looks at the device, for "}.append(output));
+    return seen.value_or(0);
+  }
+
   void resume() override {
     if (const auto resumed = rig_.resume(); !resumed) this->lose_link(resumed.error());
   }

@@ -9,9 +9,6 @@ namespace {
 
 constexpr std::string_view kUnknown = "the document does not have it";
 constexpr std::array kEquivalents{
-    EquivalentFault{"late:Unfolded", "how long an arm takes to unfold is not known"},
-    EquivalentFault{"late:Retracted", "how long an arm takes to fold is not known"},
-    EquivalentFault{"first-point:Handle", "its two points are too near for the time to tell"},
     EquivalentFault{"bit-high:0", "a healthy server always sets bit 0"},
     EquivalentFault{"deaf:FindBottle", kUnknown, armjig::Profile::kDocumented},
     EquivalentFault{"deaf:PlaceBottle", kUnknown, armjig::Profile::kDocumented},

@@ -45,6 +45,9 @@ std::string mark_of(std::string_view line, const Judgement& judgement) {
   return messages.empty() ? std::string{} : armjig::mark_of(messages.front(), judgement);
 }
 
+/// Kinova's number of an arm that is not at its ready pose, so that Initialize leads it there.
+constexpr std::int64_t kModeElsewhere = 5;
+
 bool is_event_free(std::string_view command) {
   return command == "EStop" || command == "QuitEStop" || command.starts_with("MoveJoystick");
 }
@@ -56,7 +59,8 @@ ServerBench::ServerBench(Rig<SessionSource> rig, MayStop may_stop)
   clients_.emplace_back().port = port().make_port();
 }
 
-ServerBench::~ServerBench() = default;
+/// Whoever comes next finds an arm that nobody holds.
+ServerBench::~ServerBench() { put_inputs_back(); }
 
 Result<void> ServerBench::begin_session() {
   auto& first = clients_.front();
@@ -383,8 +387,14 @@ void ServerBench::wait_until_before_beat(Duration time) {
 // The server and its machine.
 
 void ServerBench::touch(std::string_view input, std::int64_t value) {
-  if (is_deaf() || reach(input, value)) return;
-  skip(fmt::format("needs a hand at the server, for {}", input));
+  if (is_deaf()) return;
+  if (!reach(input, value)) return skip(fmt::format("needs a hand at the server, for {}", input));
+  if (input == "arm.held" || input.starts_with("arm.fail.")) left_.emplace(input, 0);
+  if (input == "arm.mode") left_.emplace(input, kModeElsewhere);
+}
+
+void ServerBench::put_inputs_back() {
+  for (const auto& [input, usual] : std::exchange(left_, {})) (void)reach(input, usual);
 }
 
 bool ServerBench::can_restart() {
@@ -497,6 +507,7 @@ void ServerBench::initialize() {
 
 void ServerBench::bring_to(std::size_t start) {
   drop_others();
+  put_inputs_back();
   start_ = static_cast<Start>(start);
   if (std::exchange(is_spoiled_, false) || start_ == kFresh) restart();
   auto& one = client();

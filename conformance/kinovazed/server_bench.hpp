@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -121,7 +123,8 @@ class ServerBench final : public PortBench<SessionSource> {
   /// Lets time pass until a beat is that far away.
   void wait_until_before_beat(Duration time);
 
-  /// Does at the server what no client can; skips the case where nobody can.
+  /// Does at the server what no client can; skips the case where nobody can. A hand that is held,
+  /// calls that fail and modes that the arm says are over with the case.
   void touch(std::string_view input, std::int64_t value);
   /// What follows ends the server, or leaves it as no client can put it right: it is started anew
   /// before the next case. Skips the case where nobody can do that.
@@ -176,6 +179,7 @@ class ServerBench final : public PortBench<SessionSource> {
   [[nodiscard]] bool stop_all();
   [[nodiscard]] std::optional<Heard> beat_in_use();
   void drop_others();
+  void put_inputs_back();
   void restart();
   [[nodiscard]] bool start_anew();
   void initialize();
@@ -189,6 +193,7 @@ class ServerBench final : public PortBench<SessionSource> {
   std::optional<Instant> mode_said_;
   Start start_ = kStopped;
   bool is_spoiled_ = false;
+  std::map<std::string, std::int64_t, std::less<>> left_;  ///< inputs to put back behind the case
   MayStop may_stop_;
   bool is_seen_stopped_ = false;  ///< since it was connected
 };

@@ -39,7 +39,7 @@ Suite suite() noexcept {
       death_chapter(),
       chapter("Client programs", programs::host_requirements()),
   };
-  return {"kinovazed", "0.2", kChapters, kStarts, shipped_document("docs/spec/kinovazed.md")};
+  return {"kinovazed", "0.3", kChapters, kStarts, shipped_document("docs/spec/kinovazed.md")};
 }
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<SessionSource> rig, const RigOptions& how) {

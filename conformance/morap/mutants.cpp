@@ -34,13 +34,14 @@ constexpr std::array kHints{
     SectionHints{"Control law", {"morap.loop", "morap.voltage", "morap.torque", "morap.tick"}},
     SectionHints{"Stored figures",
                  {"morap.read", "morap.tune", "morap.voltage", "morap.calibrate"}},
+    SectionHints{"Pen", {"morap.pen"}},
     SectionHints{"Profile", {"morap.program", "morap.tune", "morap.brake", "morap.direct"}},
 };
 
 }  // namespace
 
 MutantsEntry mutants_entry() noexcept {
-  return {"morap", emulation::all_faults, kEquivalents, kHints};
+  return {"morap", emulation::all_faults, kEquivalents, kHints, "pen=yes"};
 }
 
 }  // namespace armjig::morap::conformance

@@ -27,7 +27,7 @@ Suite suite() noexcept {
       tune_chapter(),       loop_chapter(),    motion_chapter(),
       documented_chapter(), pen_chapter(),     chapter("Masters", programs::host_requirements()),
   };
-  return {"morap", "0.2", kChapters, kStarts, shipped_document("docs/spec/morap.md")};
+  return {"morap", "0.3", kChapters, kStarts, shipped_document("docs/spec/morap.md")};
 }
 
 }  // namespace armjig::morap::conformance

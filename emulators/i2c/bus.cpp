@@ -80,6 +80,13 @@ bool Bus::set_input(Instant time, std::string_view name, std::int64_t value) {
       devices_, [&](BusDevice& device) { return device.set_input(time, name, value); });
 }
 
+std::optional<std::int64_t> Bus::observe(Instant time, std::string_view name) {
+  for (auto& device : devices_) {
+    if (const auto seen = device.observe(time, name)) return seen;
+  }
+  return std::nullopt;
+}
+
 std::optional<Trouble> Bus::take_trouble(Trouble::Kind kind) {
   const auto found = std::ranges::find_if(troubles_, [&](const Trouble& trouble) {
     return trouble.kind == kind && trouble.byte == byte_ &&

@@ -22,6 +22,7 @@ namespace armjig::i2c {
 /// - `advance_to(Instant)`: time goes on without traffic;
 /// - `restart(Instant)`: power fails and comes back;
 /// - `set_input(Instant, name, value)`: does what no bus can, or answers false;
+/// - `observe(Instant, name)`: what is to be seen at it, or none;
 /// - `stretch()`: for how long it holds the clock after the byte that it just had.
 class BusDevice {
  public:
@@ -50,6 +51,9 @@ class BusDevice {
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) {
     return model_->set_input(time, name, value);
   }
+  [[nodiscard]] std::optional<std::int64_t> observe(Instant time, std::string_view name) {
+    return model_->observe(time, name);
+  }
 
   /// The device itself; nullptr if it is none of that type.
   template <class Device>
@@ -75,6 +79,8 @@ class BusDevice {
     [[nodiscard]] virtual Duration stretch() const = 0;
     [[nodiscard]] virtual bool set_input(Instant time, std::string_view name,
                                          std::int64_t value) = 0;
+    [[nodiscard]] virtual std::optional<std::int64_t> observe(Instant time,
+                                                              std::string_view name) = 0;
   };
 
   template <class Device>
@@ -105,6 +111,10 @@ class BusDevice {
         return device.set_input(time, name, value);
       }
       return false;
+    }
+    std::optional<std::int64_t> observe(Instant time, std::string_view name) override {
+      if constexpr (requires { device.observe(time, name); }) return device.observe(time, name);
+      return std::nullopt;
     }
     Device device;
   };
@@ -163,6 +173,8 @@ class Bus {
   void advance_to(Instant time);
   /// Of the first device that has such an input. False: none has.
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
+  /// At the first device that has such a thing.
+  [[nodiscard]] std::optional<std::int64_t> observe(Instant time, std::string_view name);
 
  private:
   [[nodiscard]] std::optional<Trouble> take_trouble(Trouble::Kind kind);

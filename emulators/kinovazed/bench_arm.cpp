@@ -41,7 +41,7 @@ BenchArm::BenchArm(const BenchOptions& options)
 void BenchArm::advance_to(Instant time) noexcept {
   const double elapsed = std::chrono::duration<double>{time - now_}.count();
   now_ = time;
-  if (!has_control_ || elapsed <= 0) return;
+  if (!has_control_ || is_held_ || elapsed <= 0) return;
   if (has_target_) {
     approach(target_, elapsed, target_remaining_s_);
     has_target_ = target_remaining_s_ > 0;

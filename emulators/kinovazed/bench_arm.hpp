@@ -56,6 +56,8 @@ class BenchArm {
   void set_current_sum(float ampere) noexcept { current_sum_ = ampere; }
 
   void set_pose(const Pose& pose) noexcept { pose_ = pose; }
+  /// While it is held it stays where it is or is put, and what moves it goes on afterwards.
+  void hold(bool is_held) noexcept { is_held_ = is_held; }
 
   /// Where it is, without noise.
   [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
@@ -78,6 +80,7 @@ class BenchArm {
   Pose pose_;
   float current_sum_ = 0.8F;
   bool has_control_ = false;
+  bool is_held_ = false;
   bool is_home_held_ = false;
   double button_remaining_s_ = 0;
   bool has_target_ = false;

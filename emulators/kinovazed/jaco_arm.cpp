@@ -39,7 +39,7 @@ void JacoArm::advance_to(Instant time) noexcept {
   body_.advance_to(time);
   const double elapsed = std::chrono::duration<double>{time - now_}.count();
   now_ = time;
-  if (control_ == Control::kAngular && stick_ != Stick{}) turn_joints(elapsed);
+  if (control_ == Control::kAngular && stick_ != Stick{} && !is_held_) turn_joints(elapsed);
 }
 
 float JacoArm::current_sum() const noexcept {

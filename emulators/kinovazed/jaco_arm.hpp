@@ -45,6 +45,12 @@ class JacoArm {
   // What happens to it.
   void set_mode(ArmMode mode) noexcept { body_.set_mode(mode); }
   void set_current_sum(float ampere) noexcept { current_ = ampere; }
+  /// In angular control its joints are those of the pose before until a control is selected.
+  void set_pose(const Pose& pose) noexcept { body_.set_pose(pose); }
+  void hold(bool is_held) noexcept {
+    is_held_ = is_held;
+    body_.hold(is_held);
+  }
 
   /// Where it is, without noise.
   [[nodiscard]] const Pose& pose() const noexcept { return body_.pose(); }
@@ -60,6 +66,7 @@ class JacoArm {
   BenchArm body_;
   Instant now_{};
   bool has_control_ = false;
+  bool is_held_ = false;
   Control control_ = Control::kCartesian;
   JointAngles joints_ = kReadyAngles;
   Stick stick_;

@@ -33,6 +33,11 @@ class HostedDevice {
   [[nodiscard]] virtual std::optional<Instant> next_event() const = 0;
   /// Does beside the device what no client can. False: nothing has that name and takes the value.
   [[nodiscard]] virtual bool set_input(Instant time, std::string_view name, std::int64_t value) = 0;
+  /// What people see beside the device. None: nothing has that name.
+  [[nodiscard]] virtual std::optional<std::int64_t> observe(Instant /*time*/,
+                                                            std::string_view /*name*/) {
+    return std::nullopt;
+  }
   /// Whoever hosts it did not look between these times: what clients did then it gets now.
   virtual void overlook(Instant /*from*/, Instant /*to*/) {}
   /// What `set_input` knows, for people.
@@ -113,6 +118,10 @@ class HostedAs : public Kind {
       return device_.set_input(time, name, value);
     }
     return false;
+  }
+  [[nodiscard]] std::optional<std::int64_t> observe(Instant time, std::string_view name) final {
+    if constexpr (requires { device_.observe(time, name); }) return device_.observe(time, name);
+    return std::nullopt;
   }
   [[nodiscard]] std::span<const DeviceInput> inputs() const final {
     if constexpr (requires { device_.inputs(); }) return device_.inputs();

@@ -148,6 +148,14 @@ DefectiveNode make_node(const NodeSettings& settings) {
   return DefectiveNode{setup, std::move(defects)};
 }
 
+/// The pen that is on the bus with such nodes.
+PenSetup pen_beside(const NodeSettings& settings) {
+  NodeSetup setup;
+  Defects defects;
+  for (const auto& fault : settings.faults) std::ignore = add_fault(fault, setup, defects);
+  return defects.pen;
+}
+
 }  // namespace
 
 const KnownMotor& NodeSettings::known_motor() const noexcept {
@@ -168,7 +176,7 @@ Outcome<BusSettings> read_bus(const DeviceOptions& options, const std::string& w
       bus.nodes.push_back(settings->node);
       bus.nodes.back().id = id;
     }
-    if (settings->has_pen.value_or(false)) bus.pens.emplace_back();
+    if (settings->has_pen.value_or(false)) bus.pens.push_back(pen_beside(settings->node));
     return bus;
   }
   if (settings->ids || settings->has_pen) {

@@ -35,12 +35,13 @@ std::byte Pen::read(Instant /*time*/) noexcept { return std::byte{0}; }
 void Pen::stop(Instant time) {
   advance_to(time);
   if (is_written_ && received_.size() > 0) obey(received_);
+  if (is_written_ && setup_.retracts_when_poked) degrees_ = pen::kRetractedDegrees;
   is_written_ = false;
 }
 
 void Pen::advance_to(Instant time) noexcept {
   if (time < next_poll_) return;
-  next_poll_ += ((time - next_poll_) / kPollPeriod + 1) * kPollPeriod;
+  next_poll_ += ((time - next_poll_) / setup_.poll_period + 1) * setup_.poll_period;
   if (hangs_) return;
   if (deploys_) {
     degrees_ = pen::kDeployedDegrees;
@@ -51,7 +52,7 @@ void Pen::advance_to(Instant time) noexcept {
 
 void Pen::restart(Instant time) noexcept {
   *this = Pen{setup_};
-  next_poll_ = time + kPollPeriod;
+  next_poll_ = time + setup_.poll_period;
 }
 
 void Pen::press(Instant time, bool deploys, bool retracts) noexcept {
@@ -65,10 +66,20 @@ bool Pen::set_input(Instant time, std::string_view name, std::int64_t value) {
     press(time, value != 0, retracts_);
   } else if (name == "retract") {
     press(time, deploys_, value != 0);
+  } else if (name == "pen-power") {
+    restart(time);
   } else {
     return false;
   }
   return true;
+}
+
+std::optional<std::int64_t> Pen::observe(Instant time, std::string_view name) noexcept {
+  advance_to(time);
+  if (name == "servo") return degrees_;
+  if (name == "lamp1") return lamp1_ ? 1 : 0;
+  if (name == "lamp2") return lamp2() ? 1 : 0;
+  return std::nullopt;
 }
 
 bool Pen::lamp2() const noexcept {
@@ -77,8 +88,8 @@ bool Pen::lamp2() const noexcept {
 
 void Pen::obey(Bytes data) {
   if (hangs_) return;
-  degrees_ = pen::servo_degrees(data);
-  lamp1_ = !lamp1_;
+  degrees_ = setup_.degrees(data);
+  lamp1_ = setup_.has_lamp1 && !lamp1_;
   console_ += std::to_string(degrees_) + "\r\n";
   hangs_ = setup_.hangs_on_surplus && data.size() > used_by(data);
 }

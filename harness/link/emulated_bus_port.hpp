@@ -44,6 +44,11 @@ class EmulatedBusPort final : public BusPort {
     }
     return BusPort::touch(input, value);
   }
+  /// For buses that have `observe(time, name)`.
+  [[nodiscard]] std::optional<std::int64_t> observe(std::string_view output) override {
+    if constexpr (requires { bus().observe(now_, output); }) return bus().observe(now_, output);
+    return BusPort::observe(output);
+  }
   [[nodiscard]] auto& bus() noexcept { return device_in(held_); }
 
  private:

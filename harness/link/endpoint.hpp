@@ -33,6 +33,14 @@ class Endpoint {
     (void)value;
     return false;
   }
+
+  /// What is to be seen at the device and does not come over its link: where a servo stands,
+  /// whether a lamp is lit. Names and values are the device's own. None: there is no such thing, or
+  /// nobody who looks.
+  [[nodiscard]] virtual std::optional<std::int64_t> observe(std::string_view output) {
+    (void)output;
+    return std::nullopt;
+  }
 };
 
 }  // namespace armjig

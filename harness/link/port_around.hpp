@@ -28,6 +28,9 @@ class PortAround : public Port {
   [[nodiscard]] bool touch(std::string_view input, std::int64_t value) override {
     return inner_->touch(input, value);
   }
+  [[nodiscard]] std::optional<std::int64_t> observe(std::string_view output) override {
+    return inner_->observe(output);
+  }
 
  protected:
   [[nodiscard]] Port& inner() noexcept { return *inner_; }

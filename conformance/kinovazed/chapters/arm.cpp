@@ -2,10 +2,12 @@
 #include "conformance/kinovazed/chapters.hpp"
 
 #include "conformance/kinovazed/cases.hpp"
+#include "conformance/kinovazed/fixture.hpp"
 
 namespace armjig::kinovazed::conformance {
 namespace {
 
+using namespace std::string_view_literals;
 using enum State;
 
 /// A mode that cannot be read, once: the server notices at its next look.
@@ -24,6 +26,162 @@ void expect_stop(ServerBench& server, std::string_view call, std::string_view co
   server.accept(command);
   server.expect_quiet(6s);
   server.expect_beat(3);
+}
+
+/// A command, the calls that it makes, and the beat that shows where it leads if all work.
+struct Calls {
+  std::string_view command;
+  std::array<std::string_view, 4> made;
+  int beat;
+  Duration takes;
+};
+constexpr Duration kModeTime = 700ms;
+constexpr std::array kStopping{"trajectory_erase"sv, "joystick_axes_write"sv, "joystick_release"sv};
+constexpr Calls stopping_and(std::string_view command, std::string_view call, int beat,
+                             Duration takes = {}) {
+  return {command, {kStopping[0], kStopping[1], kStopping[2], call}, beat, takes};
+}
+constexpr std::array kCallsInIdle{
+    stopping_and("Freeze", "", 13),
+    stopping_and("RunObjective:SuckDoor", "target_write", 37),
+    stopping_and("SetJoystickMode:XYZ", "cartesian_mode_select", 69, kModeTime),
+    stopping_and("SetJoystickMode:Rotation", "cartesian_mode_select", 69, kModeTime),
+    stopping_and("SetJoystickMode:Axis1to3", "angular_mode_select", 69, kModeTime),
+    stopping_and("SetJoystickMode:Axis4to6", "angular_mode_select", 69, kModeTime),
+    stopping_and("SetJoystickMode:NoMode", "cartesian_mode_select", 21),
+    Calls{"Retract", {"home_button_press"}, 5, {}}};
+constexpr std::array kCallsInSteering{Calls{"MoveJoystick:0:0:0", {"joystick_axes_write"}, 69, {}},
+                                      stopping_and("Freeze", "", 13),
+                                      stopping_and("RunObjective:SuckDoor", "target_write", 37)};
+constexpr std::array kAllCalls{
+    "take_control"sv,        "release_control"sv,       "trajectory_erase"sv,
+    "joystick_axes_write"sv, "joystick_release"sv,      "home_button_press"sv,
+    "target_write"sv,        "cartesian_mode_select"sv, "angular_mode_select"sv};
+
+/// Whether a failure hangs or ends a shipped server; that has requirements of its own.
+bool is_fatal(std::string_view call) { return call.ends_with("_mode_select"); }
+
+/// What is said is passed over, and begins again in idle.
+void start_again(ServerBench& server) {
+  server.expect_true(server.answers(), "an answer to EStop", "silence");
+  server.accept("QuitEStop");
+  server.perform("Initialize", Event::kInitialized);
+}
+
+/// EStop and QuitEStop, while each of the calls fails once.
+void estop_while_failing(ServerBench& server, std::initializer_list<std::string_view> calls) {
+  for (const auto call : calls) server.touch(fmt::format("arm.fail.{}", call), 1);
+  server.accept("EStop");
+  server.pause(300ms + 6 * server.noise());
+  server.about(fmt::format("behind EStop while {} fails", *calls.begin()));
+  server.accept("QuitEStop");
+}
+
+/// Each call fails once. One that the command makes stops the arm, of others nobody knows.
+void expect_calls(ServerBench& server, const Calls& one, State state) {
+  for (const auto call : kAllCalls) {
+    const bool is_made = std::ranges::find(one.made, call) != one.made.end();
+    if ((is_made && is_fatal(call)) || server.is_over()) continue;
+    start_again(server);
+    if (state == kSteering) server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+    server.touch(fmt::format("arm.fail.{}", call), 1);
+    server.say(one.command);
+    server.about(fmt::format("{} while {} fails", one.command, call));
+    server.pause(one.takes + 200ms + 6 * server.noise());
+    server.expect_beat(is_made ? 3 : one.beat);
+    server.touch(fmt::format("arm.fail.{}", call), 0);
+  }
+}
+
+/// What Kinova's numbers of modes make of a command that moves the arm (reference 10.3 to 10.5).
+enum class Does : std::uint8_t {
+  kNothing,     ///< it is there
+  kPress,       ///< the home button
+  kPressTwice,  ///< and lets it go between
+  kFail,
+};
+struct ModeRow {
+  int mode;
+  Does does;
+};
+constexpr int kModeError = 25'000;
+constexpr std::array kModesToReady{
+    ModeRow{0, Does::kPress}, ModeRow{1, Does::kNothing},    ModeRow{2, Does::kPress},
+    ModeRow{3, Does::kPress}, ModeRow{4, Does::kPressTwice}, ModeRow{5, Does::kPress},
+    ModeRow{6, Does::kPress}, ModeRow{7, Does::kNothing},    ModeRow{kModeError, Does::kFail}};
+constexpr std::array kModesToFold{
+    ModeRow{0, Does::kPress},   ModeRow{1, Does::kPress},   ModeRow{2, Does::kPressTwice},
+    ModeRow{3, Does::kNothing}, ModeRow{4, Does::kPress},   ModeRow{5, Does::kPress},
+    ModeRow{6, Does::kPress},   ModeRow{7, Does::kNothing}, ModeRow{kModeError, Does::kFail}};
+
+struct Homing {
+  State from;
+  std::string_view command;
+  Event event;
+};
+
+void begin_in(ServerBench& server, State state) {
+  start_again(server);
+  if (state == kRetracted) server.perform("Retract", Event::kRetracted);
+  if (state == kPoweredOff) switch_off(server);
+}
+
+enum class Ends : std::uint8_t { kThere, kStopped };
+
+/// The command in a mode, while a call fails that it makes or not. The arm is held, so that it does
+/// not get anywhere.
+void expect_homing(ServerBench& server, const Homing& one, int mode, std::string_view call,
+                   Ends ends) {
+  begin_in(server, one.from);
+  hold(server);
+  server.touch("arm.mode", mode);
+  server.pause(100ms + 6 * server.noise());
+  if (!call.empty()) server.touch(fmt::format("arm.fail.{}", call), 1);
+  server.about(fmt::format("{} in mode {} while {} fails", one.command, mode,
+                           call.empty() ? "nothing" : call));
+  if (ends == Ends::kStopped) {
+    server.say(one.command);
+    server.pause(700ms + 6 * server.noise());
+    server.expect_beat(3);
+  } else {
+    server.perform(std::string{one.command}, one.event, 400ms + 9 * server.noise());
+  }
+  if (!call.empty()) server.touch(fmt::format("arm.fail.{}", call), 0);
+  server.touch("arm.mode", 5);
+  let_go(server);
+}
+
+void expect_modes(ServerBench& server, const Homing& one, std::span<const ModeRow> rows) {
+  for (const auto& [mode, does] : rows) {
+    if (server.is_over()) return;
+    switch (does) {
+      case Does::kNothing:
+        expect_homing(server, one, mode, "home_button_press", Ends::kThere);
+        break;
+      case Does::kPressTwice:
+        expect_homing(server, one, mode, "joystick_release", Ends::kStopped);
+        [[fallthrough]];
+      case Does::kPress:
+        expect_homing(server, one, mode, "home_button_press", Ends::kStopped);
+        break;
+      case Does::kFail:
+        expect_homing(server, one, mode, "", Ends::kStopped);
+        break;
+    }
+  }
+}
+
+/// Modes that are not awaited are no event; the one that is awaited still is.
+void expect_only(ServerBench& server, State state, std::initializer_list<int> others, int awaited,
+                 Event event) {
+  enter(server, state);
+  server.pause(100ms + 6 * server.noise());
+  for (const int mode : others) {
+    server.touch("arm.mode", mode);
+    server.expect_quiet(100ms + 6 * server.noise());
+  }
+  server.touch("arm.mode", awaited);
+  server.expect(event);
 }
 
 constexpr Clause kArmClauses[] = {
@@ -60,6 +218,117 @@ constexpr Clause kArmClauses[] = {
          server.touch("arm.fail.position_read", 1);
          server.expect_quiet(300ms);
          server.expect_beat(21);
+       }),
+
+    must("kinovazed.arm.calls",
+         "A command makes its own calls to the arm and no others, and one of them that fails ends "
+         "in emergencyStopped.",
+         "server; reference 6.6 and 11.1"),
+    variant("idle", in(kIdle, "Nine calls fail during eight commands in idle.",
+                       [](ServerBench& server) {
+                         for (const auto& one : kCallsInIdle) expect_calls(server, one, kIdle);
+                       })),
+    variant("steering", in(kSteering, "And during three in steering.",
+                           [](ServerBench& server) {
+                             for (const auto& one : kCallsInSteering) {
+                               expect_calls(server, one, kSteering);
+                             }
+                           })),
+
+    must("kinovazed.arm.estop-calls",
+         "EStop erases, zeroes and releases as every stop does, and gives the control of the arm "
+         "back.",
+         "server; reference 6.6 and 11.1"),
+    /// A failure of a call that EStop makes is used up, and no Freeze meets it later.
+    variant("stops", in(kIdle, "Each of the three fails in EStop, and in Freeze no more.",
+                        [](ServerBench& server) {
+                          for (const auto call : kStopping) {
+                            estop_while_failing(server, {call});
+                            server.perform("Initialize", Event::kInitialized);
+                            server.say("Freeze");
+                            server.pause(200ms + 6 * server.noise());
+                            server.expect_beat(13);
+                            start_again(server);
+                          }
+                        })),
+    /// If it cannot be given back, the repair takes it again.
+    variant("gives-back", in(kIdle, "Neither taken without need, nor kept.",
+                             [](ServerBench& server) {
+                               estop_while_failing(server, {"take_control"});
+                               server.accept("Initialize");
+                               server.expect_quiet(700ms + 6 * server.noise());
+                               server.expect_beat(3);
+                               start_again(server);
+                               estop_while_failing(server, {"take_control", "release_control"});
+                               server.perform("Initialize", Event::kInitialized);
+                             })),
+
+    must("kinovazed.arm.homing",
+         "Where the arm says that it is decides what Initialize, Unfold and Retract do: nothing "
+         "where it is there or its word is unknown, an error at 25000, else the home button, which "
+         "is let go and pressed again where the arm turns round.",
+         "server; reference 10.3 to 10.5"),
+    variant("initialize", in(kPoweredOff, "Nine modes of the arm.",
+                             [](ServerBench& server) {
+                               expect_modes(server,
+                                            {kPoweredOff, "Initialize", Event::kInitialized},
+                                            kModesToReady);
+                             })),
+    variant("unfold", in(kRetracted, "Nine modes of the arm.",
+                         [](ServerBench& server) {
+                           expect_modes(server, {kRetracted, "Unfold", Event::kUnfolded},
+                                        kModesToReady);
+                         })),
+    variant("retract", in(kIdle, "Nine modes of the arm.",
+                          [](ServerBench& server) {
+                            expect_modes(server, {kIdle, "Retract", Event::kRetracted},
+                                         kModesToFold);
+                          })),
+
+    must("kinovazed.arm.awaited",
+         "Only the mode that is awaited is an event: ready while it unfolds, folded while it "
+         "retracts.",
+         "server; reference 10.3"),
+    variant("unfolding", in(kUnfolding, "All others pass without a word.",
+                            [](ServerBench& server) {
+                              expect_only(server, kUnfolding, {3, 0, 5, 2, 7}, 1, Event::kUnfolded);
+                            })),
+    variant("retracting", in(kRetracting, "All others pass without a word.",
+                             [](ServerBench& server) {
+                               expect_only(server, kRetracting, {1, 0, 5, 2, 7}, 3,
+                                           Event::kRetracted);
+                             })),
+    variant("idle", in(kIdle, "None is in idle.",
+                       [](ServerBench& server) {
+                         for (const int mode : {3, 0, 1, 4, 3, 1}) {
+                           server.touch("arm.mode", mode);
+                           server.expect_quiet(100ms + 6 * server.noise());
+                         }
+                         server.expect_beat(21);
+                       })),
+
+    must("kinovazed.arm.takes-control-again",
+         "A repair takes the control of the arm again that the server had, and else does not.",
+         "server; reference 10.4"),
+    /// What takes it uses up the failure.
+    in(kIdle, "In idle it is taken, in poweredOff not.",
+       [](ServerBench& server) {
+         for (const bool has_control : {true, false}) {
+           start_again(server);
+           if (!has_control) switch_off(server);
+           server.touch("arm.fail.take_control", 1);
+           server.touch("arm.fail.status_read", 1);
+           server.pause(500ms + 6 * server.noise());
+           server.accept("QuitEStop");
+           if (has_control) {
+             server.perform("Initialize", Event::kInitialized);
+           } else {
+             server.accept("Initialize");
+             server.expect_quiet(6s);
+             server.expect_beat(3);
+           }
+           server.touch("arm.fail.take_control", 0);
+         }
        }),
 
     must("kinovazed.arm.take-control",

@@ -82,6 +82,28 @@ constexpr Clause kConnectionClauses[] = {
            server.expect_beat(3);
          }),
 
+    must("kinovazed.connection.at-once",
+         "Of two clients that connect at once the first is served, and the second when that one "
+         "leaves.",
+         "server, recording connection-three"),
+    look("Both ask; the second is answered behind the first.",
+         [](ServerBench& server) {
+           server.leave();
+           server.pause(300ms + 3 * server.noise());
+           for (const std::size_t client : {1U, 2U}) {
+             server.as(client);
+             server.connect();
+           }
+           server.say("EStop");
+           server.expect_no_message(1500ms);
+           server.as(1);
+           server.say("EStop");
+           server.expect(Event::kAccepted);
+           server.leave();
+           server.as(2);
+           server.expect(Event::kAccepted);
+         }),
+
     must("kinovazed.connection.waiting-bytes",
          "What a waiting client has sent is carried out and answered when its turn comes.",
          "server, recording connection-second-waits"),

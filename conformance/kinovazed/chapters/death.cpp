@@ -2,6 +2,7 @@
 #include "conformance/kinovazed/chapters.hpp"
 
 #include "conformance/kinovazed/cases.hpp"
+#include "conformance/kinovazed/fixture.hpp"
 
 namespace armjig::kinovazed::conformance {
 namespace {
@@ -91,6 +92,83 @@ void reset_at_freeze(ServerBench& server) {
   server.connect();
 }
 
+/// Where the hand has to be so that the second way-point of PullDoor, (-0.45, -0.08, -0.272) in its
+/// frame, lies on an edge of the workspace, and the component that leads over it.
+struct Edge {
+  Place hand;
+  std::size_t axis;
+  int side;
+};
+// A roll of 3 turns that point to (0.456786, 0.015695, -0.272), a pitch of 3 to
+// (-0.45, 0.117584, 0.257988).
+constexpr std::array kEdges{
+    Edge{{-0.35, 0, 0.6, 0, 0, 0}, 0, -1}, Edge{{0.343214, 0, 0.6, 0, 0, 3}, 0, 1},
+    Edge{{0, -0.77, 0.6, 0, 0, 0}, 1, -1}, Edge{{0, 0.834305, 0.6, 0, 0, 3}, 1, 1},
+    Edge{{0, 0, 0.892012, 3, 0, 0}, 2, 1}};
+constexpr double kEdge = 0.002;
+
+/// PullDoor up to its second way-point, which lies `beyond` the edge.
+void pull_door(ServerBench& server, const Edge& edge, double beyond) {
+  auto hand = edge.hand;
+  hand[edge.axis] += edge.side * beyond;
+  visit(server, hand);
+  server.about(fmt::format("PullDoor from {:.6f} on axis {}", hand[edge.axis], edge.axis));
+  server.accept("RunObjective:PullDoor");
+  server.pause(300ms + 6 * server.noise());
+}
+
+template <std::size_t edge>
+void pull_door_outside(ServerBench& server) {
+  server.spoil();
+  pull_door(server, kEdges[edge], kEdge);
+}
+
+/// Where the hand is when Current is made the objective, which is its frame, and where it is asked.
+struct Asked {
+  Place frame;
+  Place hand;
+};
+constexpr double kQuarter = 1.570796;
+constexpr std::array kInside{
+    Asked{{-0.4, 0, 0.3, 0, 0, 0}, {0.398, 0, 0.3, 0, 0, 0}},
+    Asked{{0.4, 0, 0.3, 0, 0, 0}, {-0.398, 0, 0.3, 0, 0, 0}},
+    Asked{{0, -0.45, 0.3, 0, 0, 0}, {0, 0.398, 0.3, 0, 0, 0}},
+    Asked{{0, 0.45, 0.3, 0, 0, 0}, {0, -0.398, 0.3, 0, 0, 0}},
+    Asked{{0, 0, -0.3, 0, 0, 0}, {0, 0, 0.848, 0, 0, 0}},
+    // y of the base is x here, and its x the negative y, of which there is more.
+    Asked{{0.45, -0.4, 0.3, 0, 0, kQuarter}, {-0.398, 0.398, 0.3, 0, 0, 0}},
+    // The negative y is z here, of which there is most, and its z is y.
+    Asked{{0, 0.6, -0.3, kQuarter, 0, 0}, {0, -0.54, 0.548, 0, 0, 0}},
+    // x is z here, and its z the negative x.
+    Asked{{-0.6, 0, -0.3, 0, kQuarter, 0}, {0.54, 0, 0.498, 0, 0, 0}},
+    Asked{{0.2, 0.1, 0.3, 0.3, -0.4, 0.5}, {-0.2, -0.1, 0.2, 1, 0.2, -2}},
+};
+constexpr std::array kOutside{
+    Asked{{0.4, 0, 0.3, 0, 0, 0}, {-0.402, 0, 0.3, 0, 0, 0}},
+    Asked{{-0.4, 0, 0.3, 0, 0, 0}, {0.402, 0, 0.3, 0, 0, 0}},
+    Asked{{0, 0.45, 0.3, 0, 0, 0}, {0, -0.402, 0.3, 0, 0, 0}},
+    Asked{{0, -0.45, 0.3, 0, 0, 0}, {0, 0.402, 0.3, 0, 0, 0}},
+    Asked{{0, 0, -0.3, 0, 0, 0}, {0, 0, 0.852, 0, 0, 0}},
+    Asked{{0, -0.4, 0.3, 0, 0, kQuarter}, {0, 0.402, 0.3, 0, 0, 0}},
+    Asked{{0, 0.6, 0.3, kQuarter, 0, 0}, {0, -0.56, 0.3, 0, 0, 0}},
+    Asked{{0, 0, -0.3, 0, kQuarter, 0}, {0, 0, 0.502, 0, 0, 0}},
+};
+
+void ask_from(ServerBench& server, const Asked& asked) {
+  visit(server, asked.frame);
+  server.say("SetActiveObjective:Current");
+  server.pause(50ms + 3 * server.noise());
+  visit(server, asked.hand);
+  server.about(fmt::format("asked at {}, {}, {}", asked.hand[0], asked.hand[1], asked.hand[2]));
+  server.say("GetObjectivePosition");
+}
+
+template <std::size_t row>
+void ask_outside(ServerBench& server) {
+  server.spoil();
+  ask_from(server, kOutside[row]);
+}
+
 template <void (*kill)(ServerBench&)>
 void hangs(ServerBench& server) {
   kill(server);
@@ -167,12 +245,22 @@ constexpr Clause kDeathClauses[] = {
            "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mode-write"),
     dies("EStop is answered.", on<lives<break_mode_write>>),
 
-    unobservable(
-        "no way of published objectives leads there, and no client can place the arm",
-        must("kinovazed.death.later-point",
-             "A way-point outside 0.8 m in x, 0.85 m in y or 1.15 m in z hangs the server, if it "
-             "is not the first one.",
-             "server, transcript S9", Profiles::kFirmware)),
+    must("kinovazed.death.later-point",
+         "A way-point outside 0.8 m in x, 0.85 m in y or 1.15 m in z hangs the server, if it "
+         "is not the first one.",
+         "server, transcript S9; reference 9.2", Profiles::kFirmware),
+    variant("inside", in(kIdle, "Five that are 2 mm inside: it runs on.",
+                         [](ServerBench& server) {
+                           for (const auto& one : kEdges) {
+                             pull_door(server, one, -kEdge);
+                             server.expect_beat(37);
+                           }
+                         })),
+    variant("x-low", dies("2 mm outside: nothing comes.", on<hangs<pull_door_outside<0>>>)),
+    variant("x-high", dies("2 mm outside: nothing comes.", on<hangs<pull_door_outside<1>>>)),
+    variant("y-low", dies("2 mm outside: nothing comes.", on<hangs<pull_door_outside<2>>>)),
+    variant("y-high", dies("2 mm outside: nothing comes.", on<hangs<pull_door_outside<3>>>)),
+    variant("z-high", dies("2 mm outside: nothing comes.", on<hangs<pull_door_outside<4>>>)),
 
     unobservable("the errors that do so have requirements of their own",
                  must("kinovazed.death.process",
@@ -194,6 +282,26 @@ constexpr Clause kDeathClauses[] = {
          "the process.",
          "server; reference 5.3", Profiles::kFirmware, "kinovazed.death.no-objective-position"),
     dies("The connection ends.", on<ends<ask_position>>),
+
+    must("kinovazed.death.position-edges",
+         "The position that GetObjectivePosition asks for lies in the frame of the objective, by "
+         "whose inverse it is reckoned, and counts as outside as way-points do.",
+         "server; reference 5.3, 9.2 and 9.5", Profiles::kFirmware),
+    variant("inside", in(kIdle, "Nine positions inside, most by 2 mm: it goes on.",
+                         [](ServerBench& server) {
+                           for (const auto& one : kInside) {
+                             ask_from(server, one);
+                             server.expect_beat(21);
+                           }
+                         })),
+    variant("x-low", dies("2 mm outside: the connection ends.", on<ends<ask_outside<0>>>)),
+    variant("x-high", dies("2 mm outside: the connection ends.", on<ends<ask_outside<1>>>)),
+    variant("y-low", dies("2 mm outside: the connection ends.", on<ends<ask_outside<2>>>)),
+    variant("y-high", dies("2 mm outside: the connection ends.", on<ends<ask_outside<3>>>)),
+    variant("z-high", dies("2 mm outside: the connection ends.", on<ends<ask_outside<4>>>)),
+    variant("rolled", dies("2 mm outside: the connection ends.", on<ends<ask_outside<5>>>)),
+    variant("pitched", dies("1 cm outside: the connection ends.", on<ends<ask_outside<6>>>)),
+    variant("turned", dies("2 mm outside: the connection ends.", on<ends<ask_outside<7>>>)),
 
     should("kinovazed.death.no-objective-position", "GetObjectivePosition never ends the process.",
            "document is silent; our choice", Profiles::kDocumented,

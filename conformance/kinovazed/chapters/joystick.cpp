@@ -2,6 +2,7 @@
 #include "conformance/kinovazed/chapters.hpp"
 
 #include "conformance/kinovazed/cases.hpp"
+#include "conformance/kinovazed/fixture.hpp"
 
 namespace armjig::kinovazed::conformance {
 namespace {
@@ -113,6 +114,42 @@ void expect_stopped_by(ServerBench& server, std::initializer_list<Ending> ending
     server.about(std::string{"the way back from a rise that was ended by "} + command);
     expect_time(server, time_of(server, "Home"), 0ms, usual + 400ms + server.noise());
   }
+}
+
+/// Home, as reference 9.6 has it, and what bounds deflections there.
+constexpr Place kHomePlace{0.048067, -0.330291, 0.472718, 1.712650, -0.139070, -0.113034};
+struct Bound {
+  std::size_t axis;
+  double metres;
+};
+constexpr std::array kBounds{Bound{0, 0.79}, Bound{1, 0.84}};
+constexpr double kMillimetre = 0.001;
+/// A hand that is held at its target is seen there sooner.
+constexpr Duration kNotThere = 500ms;
+
+/// The wrist is turned for a second with the hand at Home, but for one component. Then it is held
+/// at Home, which is reached if it was not turned.
+void turn_wrist(ServerBench& server, std::size_t axis, double place, int number) {
+  auto hand = kHomePlace;
+  hand[axis] = place;
+  server.perform("SetJoystickMode:Rotation", Event::kJoystickModeSet);
+  visit(server, hand);
+  server.accept(deflection(axis, number));
+  let_go(server);
+  server.pause(1s);
+  server.accept(kStop);
+  hold(server);
+  hold_at(server, axis, kHomePlace[axis]);
+  server.about(fmt::format("Home behind a turn by {} at {}", number, place));
+}
+
+/// The hand that is held is at Home, or not.
+void expect_at_home(ServerBench& server) {
+  server.perform("RunObjective:Home", Event::kObjectiveDone);
+}
+void expect_elsewhere(ServerBench& server) {
+  server.accept("RunObjective:Home");
+  server.expect_quiet(kNotThere + 3 * server.noise());
 }
 
 constexpr int kTurnsOfAMode = 3;
@@ -314,17 +351,66 @@ constexpr Clause kJoystickClauses[] = {
              "deflection.",
              "server; reference 8.1")),
 
-    unobservable("no message tells where the arm is",
-                 must("kinovazed.joystick.bounds",
-                      "A deflection in x or y that leads beyond 0.79 or 0.84 m counts as 0, in "
-                      "every mode, by the "
-                      "last pose "
-                      "inside the workspace; the reply stays Accepted.",
-                      "server, transcript S17")),
+    must("kinovazed.joystick.bounds",
+         "A deflection in x or y that leads beyond 0.79 or 0.84 m counts as 0, in every mode, by "
+         "the last pose inside the workspace; the reply stays Accepted.",
+         "server, transcript S17"),
+    variant("stops", in(kIdle, "A millimetre beyond, the wrist is not turned outwards.",
+                        [](ServerBench& server) {
+                          for (const auto& [axis, bound] : kBounds) {
+                            for (const int side : {-1, 1}) {
+                              turn_wrist(server, axis, side * (bound + kMillimetre), -400 * side);
+                              expect_at_home(server);
+                            }
+                          }
+                        })),
+    variant("lets", in(kIdle, "A millimetre before it is, and inwards.",
+                       [](ServerBench& server) {
+                         for (const auto& [axis, bound] : kBounds) {
+                           for (const int side : {-1, 1}) {
+                             turn_wrist(server, axis, side * (bound - kMillimetre), -400 * side);
+                             expect_elsewhere(server);
+                             turn_wrist(server, axis, side * (bound + kMillimetre), 400 * side);
+                             expect_elsewhere(server);
+                           }
+                         }
+                       })),
+    variant("outside", in(kIdle, "Outside the workspace what was before counts.",
+                          [](ServerBench& server) {
+                            auto place = kHomePlace;
+                            for (const double before : {0.0, 0.795}) {
+                              place[0] = before;
+                              visit(server, place);
+                              turn_wrist(server, 0, 0.9, -400);
+                              if (before > 0) {
+                                expect_at_home(server);
+                              } else {
+                                expect_elsewhere(server);
+                              }
+                            }
+                          })),
 
-    unobservable("no message tells where the arm is",
-                 must("kinovazed.joystick.int-min", "The most negative number is not negated.",
-                      "server; reference 8.1", Profiles::kFirmware)),
+    must("kinovazed.joystick.int-min", "The most negative number is not negated.",
+         "server; reference 8.1", Profiles::kFirmware),
+    in(kIdle, "In x and y it leads back what -400 has led away, in z it leads on.",
+       [](ServerBench& server) {
+         for (std::size_t axis = 0; axis < 3; ++axis) {
+           server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+           visit(server, kHomePlace);
+           let_go(server);
+           server.accept(deflection(axis, -400));
+           server.pause(1s);
+           server.accept(deflection(axis, std::numeric_limits<int>::min()));
+           server.pause(1s);
+           server.accept(kStop);
+           hold(server);
+           if (axis < 2) {
+             expect_at_home(server);
+           } else {
+             expect_elsewhere(server);
+           }
+         }
+       }),
 
     must("kinovazed.mode.guard",
          "A mode that is written within 500 ms of another one, by way of EStop, hangs the "

@@ -70,6 +70,19 @@ void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
   node.expect_same(node.read(selector, 31), before);
 }
 
+/// A whole message and a refused one before the next tick. What is then in use must never run.
+void expect_too_many(NodeBench& node, std::string_view refused, CommandId selector,
+                     std::string_view read_back) {
+  node.needs_emulation();
+  node.tick();
+  program(node, kOfFour);
+  node.expect_programming(kSuccess);
+  program(node, refused);
+  node.expect_programming(kFailure);
+  node.ticks(3);
+  node.expect_bytes(selector, read_back);
+}
+
 constexpr Clause kProgramClauses[] = {
     must("morap.program.status-at-boot", "After power-on the programming status is 1.",
          "document, programming status; vector 3"),
@@ -209,6 +222,43 @@ constexpr Clause kProgramClauses[] = {
                   node.send_bytes(fmt::format("20 00 C8 00 05 20 {}", good()));
                   node.expect_programming(kFailure);
                 }),
+
+    must(
+        "morap.program.too-many-active",
+        "A refused count stays, and is in use with what a good message before it had staged, if no "
+        "tick came between; then the read-back goes on with the fields behind the coefficients, as "
+        "they lie in memory.",
+        "recordings random/mini-count5-active, random/s1-race-905 and others", Profiles::kFirmware),
+    variant("d", programming(
+                     "7 and 10 of the first filter.",
+                     [](NodeBench& node) {
+                       expect_too_many(node, "00 C8 00 07", kReadPositionSet,
+                                       "00 C8 00 07 CD CC CC 3D CD CC 4C 3E 9A 99 99 3E CD CC CC "
+                                       "3E 00 00 00 00 00 3F 9A 99 19 3F 33 33 00 00 0A D7 23 3C "
+                                       "41");
+                       expect_too_many(node, "00 C8 00 0A", kReadPositionSet,
+                                       "00 C8 00 0A CD CC CC 3D CD CC 4C 3E 9A 99 99 3E CD CC CC "
+                                       "3E 00 00 00 00 00 3F 9A 99 19 3F 33 33 33 3F CD CC 4C 3F "
+                                       "00 00 CD CC CC BD 00 00 0A D7 23 3C 80");
+                     },
+                     kFresh)),
+    variant("c", programming(
+                     "7 of the second, behind one of the first.",
+                     [](NodeBench& node) {
+                       expect_too_many(node, "01 90 01 01 00 00 A0 40 07", kReadSpeedSet,
+                                       "01 90 01 01 00 00 A0 40 07 00 00 00 3F 9A 99 19 3F 33 33 "
+                                       "33 3F CD CC 4C 3F 00 00 CD CC CC BD CD CC 4C BE 9A 99 00 "
+                                       "0A D7 23 3C 79");
+                     },
+                     kFresh)),
+    variant("f", programming(
+                     "5 of the third: the gain of the integrator comes twice.",
+                     [](NodeBench& node) {
+                       expect_too_many(node, "00 C8 00 00 00 05", kReadPositionSet,
+                                       "00 C8 00 00 00 05 CD CC CC BD CD CC 4C BE 9A 99 99 BE CD "
+                                       "CC CC BE 0A D7 23 3C 0A D7 23 3C 32");
+                     },
+                     kFresh)),
 
     must("morap.checksum.wrong", "A wrong checksum makes the status 3.",
          "document, checksum; vector 31"),

@@ -10,9 +10,25 @@ namespace {
 
 constexpr std::string_view kFail = "arm.fail.";
 constexpr std::string_view kJoystick = "arm.joystick.";
+constexpr std::string_view kPlace = "arm.at.";
 /// Translation first, then the wrist.
 constexpr std::array<std::string_view, 6> kAxisNames{"x",       "y",       "z",
                                                      "wrist-x", "wrist-y", "wrist-z"};
+constexpr std::array<std::string_view, 6> kComponentNames{"x", "y", "z", "pitch", "yaw", "roll"};
+constexpr std::array kComponents{&Pose::x,     &Pose::y,   &Pose::z,
+                                 &Pose::pitch, &Pose::yaw, &Pose::roll};
+
+/// A hand that is put somewhere, by one component in millionths.
+template <class Arm>
+bool put(Arm& arm, std::string_view component, std::int64_t value) {
+  const auto place = find_word<std::size_t>(kComponentNames, component);
+  if (!place) return false;
+  constexpr double kMillion = 1e6;
+  auto pose = arm.pose();
+  pose.*kComponents[*place] = static_cast<float>(static_cast<double>(value) / kMillion);
+  arm.set_pose(pose);
+  return true;
+}
 
 constexpr std::array kInputs{
     DeviceInput{"restart", "any: a new process, and an arm that was just switched on"},
@@ -20,6 +36,13 @@ constexpr std::array kInputs{
     DeviceInput{"arm.fail.CALL", "so many of the next calls fail; -1: all, 0: none"},
     DeviceInput{"arm.mode", "what the arm says that it does, as a number of Kinova's"},
     DeviceInput{"arm.current", "of all joints together, in milliampere"},
+    DeviceInput{"arm.held", "1: somebody holds its hand where it is, 0: it is let go"},
+    DeviceInput{"arm.at.x", "puts its hand there, in micrometres"},
+    DeviceInput{"arm.at.y", "micrometres"},
+    DeviceInput{"arm.at.z", "micrometres"},
+    DeviceInput{"arm.at.pitch", "microradians"},
+    DeviceInput{"arm.at.yaw", "microradians"},
+    DeviceInput{"arm.at.roll", "microradians"},
     DeviceInput{"arm.joystick.x", "its own joystick, -1000 to 1000: left and right"},
     DeviceInput{"arm.joystick.y", "-1000 to 1000: to the front and back"},
     DeviceInput{"arm.joystick.z", "-1000 to 1000: twisted, up and down"},
@@ -185,7 +208,9 @@ bool DefectiveServer::set_arm(ArmPort& arm, std::string_view name, std::int64_t 
       [&](auto& plant) {
         if (name == "arm.mode") plant.set_mode(static_cast<ArmMode>(value));
         if (name == "arm.current") plant.set_current_sum(static_cast<float>(value) / 1000);
-        return name == "arm.mode" || name == "arm.current";
+        if (name == "arm.held") plant.hold(value != 0);
+        if (name.starts_with(kPlace)) return put(plant, name.substr(kPlace.size()), value);
+        return name == "arm.mode" || name == "arm.current" || name == "arm.held";
       },
       arm.plant());
 }

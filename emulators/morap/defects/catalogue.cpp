@@ -95,6 +95,43 @@ constexpr std::array kDifferences{
     Named<Spoil>{"refuses-unstable-tuning", kTurned<&Profile::refuses_unstable_tuning>},
 };
 
+/// A pen that goes where it should but for one angle.
+template <int wrong, int instead>
+constexpr int (*kOneOff)(Bytes) = [](Bytes command) {
+  const int degrees = pen::servo_degrees(command);
+  return degrees == wrong ? instead : degrees;
+};
+
+using SpoilPen = void (*)(PenSetup& setup);
+constexpr std::array kPens{
+    Named<SpoilPen>{"elsewhere", [](PenSetup& pen) { ++pen.address; }},
+    Named<SpoilPen>{"boots-deployed",
+                    [](PenSetup& pen) { pen.degrees_at_boot = pen::kDeployedDegrees; }},
+    Named<SpoilPen>{"deploys-less",
+                    [](PenSetup& pen) { pen.degrees = kOneOff<pen::kDeployedDegrees, 9>; }},
+    Named<SpoilPen>{"retracts-less",
+                    [](PenSetup& pen) { pen.degrees = kOneOff<pen::kRetractedDegrees, 44>; }},
+    Named<SpoilPen>{"position-of-27", [](PenSetup& pen) { pen.degrees = kOneOff<27, 26>; }},
+    Named<SpoilPen>{"missing-position-deploys",
+                    [](PenSetup& pen) {
+                      pen.degrees = [](Bytes command) {
+                        const bool is_missing = command.size() == 1 && command[0] == std::byte{7};
+                        return is_missing ? pen::kDeployedDegrees : pen::servo_degrees(command);
+                      };
+                    }},
+    Named<SpoilPen>{"unknown-deploys",
+                    [](PenSetup& pen) {
+                      pen.degrees = [](Bytes command) {
+                        const bool is_unknown = command[0] > std::byte{7};
+                        return is_unknown ? pen::kDeployedDegrees : pen::servo_degrees(command);
+                      };
+                    }},
+    Named<SpoilPen>{"poke-retracts", [](PenSetup& pen) { pen.retracts_when_poked = true; }},
+    Named<SpoilPen>{"dark-lamp", [](PenSetup& pen) { pen.has_lamp1 = false; }},
+    Named<SpoilPen>{"takes-surplus", [](PenSetup& pen) { pen.hangs_on_surplus = false; }},
+    Named<SpoilPen>{"slow-buttons", [](PenSetup& pen) { pen.poll_period *= 2; }},
+};
+
 constexpr std::array kStatuses{
     Named<MotorStatus>{"needs-calibration", MotorStatus::kNeedsCalibration},
     Named<MotorStatus>{"disabled", MotorStatus::kDisabled},
@@ -148,6 +185,12 @@ bool add_spoilt(std::string_view text, NodeSetup& setup, Defects&) {
   if (found != nullptr) found->meaning(setup);
   return found != nullptr;
 }
+bool add_pen(std::string_view text, NodeSetup& /*setup*/, Defects& defects) {
+  const auto* const found = find_named(kPens, text);
+  if (found != nullptr) found->meaning(defects.pen);
+  return found != nullptr;
+}
+
 bool add_quirk(std::string_view text, NodeSetup&, Defects& defects) {
   return choose_named(quirks(), text, defects.quirks);
 }
@@ -158,7 +201,8 @@ constexpr std::array kWords{Named<Add>{"in", add_heard},
                             Named<Add>{"law", add_spoilt<kLaws>},
                             Named<Add>{"eeprom", add_spoilt<kConstants>},
                             Named<Add>{"profile", add_spoilt<kDifferences>},
-                            Named<Add>{"quirk", add_quirk}};
+                            Named<Add>{"quirk", add_quirk},
+                            Named<Add>{"pen", add_pen}};
 
 // The list of all.
 
@@ -257,6 +301,7 @@ std::vector<NamedFault> all_faults() {
   list.add_all("eeprom", kConstants, "Stored figures");
   list.add_all("profile", kDifferences, "Profile");
   for (const auto& quirk : quirks()) list.add({"quirk:", quirk.name}, quirk.section);
+  list.add_all("pen", kPens, "Pen");
   return list.take();
 }
 

@@ -7,6 +7,7 @@
 #include "emulators/faults/named_fault.hpp"
 #include "emulators/morap/defects/quirks.hpp"
 #include "emulators/morap/node.hpp"
+#include "emulators/morap/pen.hpp"
 #include "harness/core/error.hpp"
 
 namespace armjig::morap::emulation {
@@ -25,12 +26,14 @@ struct FieldFault {
   std::string field;
 };
 
-/// What is wrong with a node in what it hears and says. What is wrong inside is in its `NodeSetup`.
+/// What is wrong with a node in what it hears and says, and with the pen on its bus. What is wrong
+/// inside is in its `NodeSetup`.
 struct Defects {
   std::vector<FieldFault> heard;
   std::vector<FieldFault> sent;
   std::vector<WrongRow> rows;
   std::vector<const Quirk*> quirks;
+  PenSetup pen;  ///< of the pen that is beside it
 };
 
 /// A fault of an emulated node as users write it; it changes `setup` or `defects`:
@@ -42,6 +45,7 @@ struct Defects {
 ///     eeprom:NAME               a constant or stored parameter is another one
 ///     profile:NAME              one difference of the profile turned round
 ///     quirk:NAME                a wrong behaviour
+///     pen:NAME                  a wrong behaviour of the pen
 ///
 /// Problems: `kBadValue`.
 [[nodiscard]] Outcome<void> add_fault(std::string_view text, NodeSetup& setup, Defects& defects);

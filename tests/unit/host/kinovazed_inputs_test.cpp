@@ -49,7 +49,8 @@ TEST(KinovazedInputs, AreAllKnown) {
 
 TEST(KinovazedInputs, AreNoOthers) {
   auto server = running_server();
-  for (const auto* name : {"", "arm", "arm.fail.", "arm.fail.CALL", "arm.joystick.", "arm.foot"}) {
+  for (const auto* name : {"", "arm", "arm.fail.", "arm.fail.CALL", "arm.joystick.", "arm.foot",
+                           "arm.at.", "arm.at.w"}) {
     EXPECT_FALSE(server.set_input(at(1s), name, 0)) << name;
   }
 }
@@ -64,6 +65,20 @@ TEST(KinovazedInputs, MoveTheArmByItsOwnJoystickUntilItIsLetGo) {
   ASSERT_TRUE(server.set_input(at(3200ms), "arm.joystick.x", 0));
   const auto let_go = logged_x(server, at(4s), client);
   EXPECT_NEAR(logged_x(server, at(6s), client), let_go, 0.001);
+}
+
+TEST(KinovazedInputs, PutTheHandSomewhereAndHoldItThere) {
+  for (const auto* plant : {"jaco", "bench"}) {
+    auto server = running_server({{"plant", plant}});
+    const auto client = *server.connect(at(1s));
+    ASSERT_TRUE(server.set_input(at(1s), "arm.held", 1));
+    constexpr std::string_view kLead = "QuitEStop\r\nInitialize\r\n";
+    server.receive(at(1s), client, std::as_bytes(std::span{kLead}));
+    ASSERT_TRUE(server.set_input(at(2s), "arm.at.x", -123'456));
+    EXPECT_NEAR(logged_x(server, at(12s), client), -0.123456, 0.001) << plant << ", led by nobody";
+    ASSERT_TRUE(server.set_input(at(13s), "arm.held", 0));
+    EXPECT_GT(logged_x(server, at(23s), client), 0.1) << plant << ", at its ready pose";
+  }
 }
 
 TEST(KinovazedInputs, HaveNoJoystickOnTheArmOfTheRecordings) {

@@ -141,6 +141,8 @@ const std::vector<Step>& steps() {
         {"conformance/stream_bench.cpp", "the port of the rig that `armjig conformance` opened"},
         {"conformance/bus_bench.cpp", "the bus of the rig that `armjig conformance` opened"},
         {"conformance/morap/chapters/bus.cpp", "the same bus, by way of the bench"},
+        {"conformance/morap/chapters/pen.cpp",
+         "the same bus, to the pen on it, by way of the bench"},
         {"emulators/memory/overheard.cpp", "hands on what a program writes to an emulated bus"},
         {"emulators/morap/defects/defects.cpp", "an emulated node"},
         {"harness/drive/parol6/drive_loop.cpp", "whoever makes a loop hands it the port of a rig"},

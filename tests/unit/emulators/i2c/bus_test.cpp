@@ -197,5 +197,18 @@ TEST_F(MorapBus, CopyIsASnapshot) {
   EXPECT_NE(node().angle(), 0.0F);
 }
 
+TEST_F(MorapBus, ShowsThePenToWhoeverLooks) {
+  EXPECT_EQ(port_.observe("servo"), 45);
+  ASSERT_EQ(port_.start({morap::pen::kAddress}, kWrite), Ack::kAck);
+  ASSERT_EQ(port_.write(std::byte{1}), Ack::kAck);
+  ASSERT_TRUE(port_.stop());
+  EXPECT_EQ(port_.observe("servo"), 8);
+  EXPECT_EQ(port_.observe("lamp1"), 1);
+  EXPECT_EQ(port_.observe("lamp2"), 1);
+  EXPECT_EQ(port_.observe("lamp3"), std::nullopt);
+  ASSERT_TRUE(port_.touch("pen-power", 1));
+  EXPECT_EQ(port_.observe("servo"), 45);
+}
+
 }  // namespace
 }  // namespace armjig::i2c

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "conformance/kinovazed/server_bench.hpp"
+
+/// An arm whose hand somebody holds and puts to places: what no message tells, the server's
+/// reaction to a place does. Cases with it are skipped where nobody can do that.
+namespace armjig::kinovazed::conformance {
+
+/// Metres, then radians: x, y, z, pitch, yaw, roll, as the server compares them.
+using Place = std::array<double, 6>;
+
+/// Within that a way-point counts as reached, in metres and radians (kinovazed.objective.near).
+inline constexpr double kReachMetres = 0.05;
+inline constexpr double kReachRadians = 0.25;
+
+/// The hand stays where it is, whatever the server asks for, until it is let go or the case is
+/// over.
+void hold(ServerBench& server);
+void let_go(ServerBench& server);
+
+/// Puts the hand there and holds it. The server may not have looked at the arm yet.
+void hold_at(ServerBench& server, const Place& place);
+/// The same of one component, from 0; the others stay.
+void hold_at(ServerBench& server, std::size_t component, double value);
+
+/// The hand is held there for as long as the server needs to look, and to send the next way-point.
+void visit(ServerBench& server, const Place& place);
+
+/// `place` with all components `share` of the reach away from it, every other one to the other
+/// side.
+[[nodiscard]] Place near(const Place& place, double share);
+
+/// Runs an objective by hand. Each of `points` is reached where it should be and not a little
+/// further away in any component, either way; those before and behind do not stand for it. `first`
+/// is where the command is given.
+void expect_points(ServerBench& server, std::string_view objective, const Place& first,
+                   std::span<const Place> points);
+
+}  // namespace armjig::kinovazed::conformance
