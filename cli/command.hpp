@@ -42,6 +42,7 @@ void add_decode(CLI::App& app, Devices devices, Action& action);
 void add_devices(CLI::App& app, Devices devices, Action& action);
 void add_doctor(CLI::App& app, Devices devices, Action& action);
 void add_emulate(CLI::App& app, Devices devices, Action& action);
+void add_fuzz(CLI::App& app, Devices devices, Action& action);
 void add_kin(CLI::App& app, Devices devices, Action& action);
 void add_lab(CLI::App& app, Devices devices, Action& action);
 void add_latency(CLI::App& app, Devices devices, Action& action);

@@ -77,6 +77,15 @@ struct OnServer : OnPort<SessionSource, HostedServer> {
 
 struct OnBus : OnPort<BusPort, HostedBus> {};
 
+/// What a campaign (`armjig fuzz`) knows of a device besides; a device that says nothing of it has
+/// campaigns, too.
+struct FuzzEntry {
+  /// Makes lengths and checksums of a message right again, where sessions drawn at random do not.
+  void (*seal)(std::span<std::byte> message){};
+  /// In what a live device may differ from its model: rules as of `armjig replay --rules`.
+  std::string_view live_rules{};
+};
+
 /// Adds a subcommand that only this device has.
 using AddOwnCommand = void (*)(CLI::App& app, const Device& device, Action& action);
 
@@ -95,7 +104,8 @@ struct Device {
   std::optional<ProgramCheckEntry> program_check{};  ///< none: nothing is demanded of programs
   Replay replay{};                                   ///< how recordings drive it
   DrawSession draw_session{};                        ///< none: nothing is drawn at random
-  Dissection (*dissection)(){};                      ///< none: Wireshark is told nothing
+  FuzzEntry fuzz{};
+  Dissection (*dissection)(){};  ///< none: Wireshark is told nothing
   double watch_rate = 10;  ///< questions, or looks, a second unless the user wants another one
   std::vector<AddOwnCommand> commands{};
 };

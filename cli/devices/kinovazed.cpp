@@ -12,6 +12,16 @@
 #include "harness/wire/kinovazed/dissector.hpp"
 
 namespace armjig::kinovazed {
+namespace {
+
+/// When in a second a server beats, it alone knows.
+constexpr std::string_view kLiveRules = R"(
+time_ms = 100
+order = "free"
+message = [{name = "Heartbeat", ignore = true}]
+)";
+
+}  // namespace
 
 cli::Device device() {
   return {.name = "kinovazed",
@@ -36,6 +46,7 @@ cli::Device device() {
                      .touches_of = replay::touches_of,
                      .verify_table = replay::verify_matrix},
           .draw_session = sessions::draw,
+          .fuzz = {.live_rules = kLiveRules},
           .dissection = dissection};
 }
 

@@ -12,6 +12,21 @@
 #include "harness/wire/morap/dissector.hpp"
 
 namespace armjig::morap {
+namespace {
+
+/// What depends on where in its tick a node was, parts of values among it, which are noise.
+constexpr std::string_view kLiveRules = R"(
+time_ms = 100
+order = "free"
+message = [{name = "noise", ignore = true}]
+field = [
+  {name = "angle", tolerance = 0.5},
+  {name = "current", ignore = true},
+  {name = "programming_status", ignore = true},
+]
+)";
+
+}  // namespace
 
 cli::Device device() {
   return {.name = "morap",
@@ -35,6 +50,7 @@ cli::Device device() {
                      .write = replay::write,
                      .touches_of = replay::touches_of},
           .draw_session = sessions::draw,
+          .fuzz = {.live_rules = kLiveRules},
           .dissection = dissection,
           .commands = {cli::add_i2c, cli::add_morap}};
 }

@@ -12,6 +12,22 @@
 #include "harness/wire/parol6/dissector.hpp"
 
 namespace armjig::parol6 {
+namespace {
+
+/// What depends on the microsecond at which a frame came: how long ago the one before it did, and
+/// how far joints have moved meanwhile.
+constexpr std::string_view kLiveRules = R"(
+time_ms = 100
+order = "free"
+field = [
+  {name = "timing", ignore = true},
+  {name = "position.j1", tolerance = 1000}, {name = "position.j2", tolerance = 1000},
+  {name = "position.j3", tolerance = 1000}, {name = "position.j4", tolerance = 1000},
+  {name = "position.j5", tolerance = 1000}, {name = "position.j6", tolerance = 1000},
+]
+)";
+
+}  // namespace
 
 cli::Device device() {
   return {.name = "parol6",
@@ -34,6 +50,7 @@ cli::Device device() {
           .program_check = programs::program_check(),
           .replay = {.run = replay::replay, .run_plainly = replay::replay_plainly},
           .draw_session = sessions::draw,
+          .fuzz = {.live_rules = kLiveRules},
           .dissection = dissection,
           .watch_rate = 100,
           .commands = {cli::add_plan, cli::add_run, cli::add_script}};

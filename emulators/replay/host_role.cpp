@@ -80,6 +80,8 @@ class Playing {
   Playing(Instant now, Records records, const PlayHow& how)
       : clock_{now, records, how.speed}, touches_of_{how.touches_of} {}
   [[nodiscard]] Played take() { return std::move(played_); }
+  /// The record that was played last has passed.
+  void note_passed(Instant now) { played_.passed.push_back(clock_.recorded(now)); }
 
  protected:
   Result<void> expect(KeptRecord record) {
@@ -476,12 +478,13 @@ class BusPlaying : public Playing {
 };
 
 template <class Kind>
-Outcome<Played> play(Kind playing, Records records, const PlayHow& how) {
+Outcome<Played> play(Kind playing, const Endpoint& port, Records records, const PlayHow& how) {
   const auto ended = [](const Error& error) {
     return problem(error.code, "replay", "the device did not take what the host sent");
   };
   for (const auto& record : records) {
     if (const auto played = playing.play(record); !played) return ended(played.error());
+    playing.note_passed(port.now());
   }
   if (!records.empty()) {
     const auto heard = playing.listen_until(records.back().time + how.trailing);
@@ -495,13 +498,13 @@ Outcome<Played> play(Kind playing, Records records, const PlayHow& how) {
 }  // namespace
 
 Outcome<Played> play_host(StreamPort& port, Records records, const PlayHow& how) {
-  return play(StreamPlaying{port, records, how}, records, how);
+  return play(StreamPlaying{port, records, how}, port, records, how);
 }
 Outcome<Played> play_host(SessionSource& server, Records records, const PlayHow& how) {
-  return play(ServerPlaying{server, records, how}, records, how);
+  return play(ServerPlaying{server, records, how}, server, records, how);
 }
 Outcome<Played> play_host(BusPort& port, Records records, const PlayHow& how) {
-  return play(BusPlaying{port, records, how}, records, how);
+  return play(BusPlaying{port, records, how}, port, records, how);
 }
 
 }  // namespace armjig

@@ -38,7 +38,8 @@ struct Played {
   /// When the host ended a connection, by its number: what is later than recorded is not heard
   /// then.
   std::vector<std::pair<std::uint32_t, Instant>> ends;
-  std::size_t sent{};  ///< records of the host that were played
+  std::size_t sent{};             ///< records of the host that were played
+  std::vector<Instant> passed{};  ///< when each record was dealt with, in the recording's time
   /// What no host can play on this link or nobody can see there, by its name, and how often.
   std::map<std::string, std::size_t> left_out;
 };

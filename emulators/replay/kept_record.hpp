@@ -33,6 +33,8 @@ struct KeptRecord {
   [[nodiscard]] CaptureRecord on(const CaptureLink& link) const {
     return {time, &link, direction, id, bytes, details};
   }
+
+  friend bool operator==(const KeptRecord&, const KeptRecord&) = default;
 };
 
 /// A member of an event, which is JSON; empty, or `otherwise`, if there is no such one.

@@ -65,6 +65,15 @@ void UserFile::Close::operator()(std::FILE* file) const noexcept {
   if (file != stdin) (void)std::fclose(file);
 }
 
+UserFile UserFile::of_text(std::string_view text, std::string name) {
+  // One byte more than there is, for a buffer of none is refused.
+  auto kept = std::make_unique<std::string>(text);
+  kept->push_back('\n');
+  UserFile file{::fmemopen(kept->data(), kept->size(), "rb"), std::move(name)};
+  file.text_ = std::move(kept);
+  return file;
+}
+
 Outcome<UserFile> UserFile::open(std::string path) {
   if (path.find('\0') != std::string::npos) return cannot_read(path, hint_of(ENOENT));
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);

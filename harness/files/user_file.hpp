@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "harness/core/error.hpp"
 
@@ -26,6 +28,8 @@ class UserFile {
   /// opened for writing within a second is given up; one that has a writer is waited for.
   [[nodiscard]] static Outcome<UserFile> open(std::string path);
   [[nodiscard]] static UserFile standard_input();
+  /// Text in memory as if it were a file of that name, for what reads files only.
+  [[nodiscard]] static UserFile of_text(std::string_view text, std::string name);
 
   /// What has not been read yet, or a problem if that is more than `most` bytes.
   [[nodiscard]] Outcome<std::string> rest(std::size_t most = kMostFileBytes);
@@ -51,6 +55,7 @@ class UserFile {
   [[nodiscard]] tl::unexpected<Problem> refuse(std::string hint) const;
   [[nodiscard]] Outcome<void> check() const;
 
+  std::unique_ptr<std::string> text_;  ///< that it reads, if it is in memory; outlives the file
   std::unique_ptr<std::FILE, Close> file_;
   std::string name_;
   std::string line_;

@@ -62,6 +62,10 @@ constexpr Room kRooms[] = {
     {"emulators/replay",
      "harness/core harness/wire harness/capture harness/link emulators/demo emulators/i2c "
      "emulators/kinovazed emulators/morap emulators/parol6 emulators/memory"},
+    {"emulators/campaign",
+     "harness/core harness/wire harness/files harness/capture harness/config harness/compare "
+     "harness/link harness/rig harness/report emulators/sessions emulators/memory "
+     "emulators/replay"},
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
     {"emulators/host", "harness/core harness/wire harness/link harness/timing emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/fuzz_material.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <set>
+#include <system_error>
+#include <utility>
+
+namespace armjig::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using campaign::Material;
+using campaign::Script;
+
+/// The connection that the harmless question has for itself.
+constexpr std::uint32_t kOwnConnection = 99;
+
+/// How long what is asked harmlessly may take.
+constexpr Duration kPauseAfterQuestion = 20ms;
+
+/// What is closer together may come in one piece or in two, and nobody knows which.
+constexpr Duration kLeastGapLive = 3ms;
+
+KeptRecord border(std::string_view dir, std::string_view how, Instant time) {
+  return {.time = time,
+          .kind = LinkKind::kEvents,
+          .direction = Direction::kToDevice,
+          .details = fmt::format(R"("dir":"{}","conn":{},"text":"{}")", dir, kOwnConnection, how)};
+}
+
+/// A transaction as the probe of a bus has it: a byte with address and direction, then what is
+/// written or how much is read.
+KeptRecord transaction(Bytes message, Instant time) {
+  const auto head = std::to_integer<std::uint32_t>(message.front());
+  KeptRecord record{.time = time, .kind = LinkKind::kBus, .id = head >> 1U};
+  if ((head & 1U) == 0) {
+    record.bytes.assign(message.begin() + 1, message.end());
+    record.details = R"("ack":"")";
+    return record;
+  }
+  record.direction = Direction::kFromDevice;
+  record.details = fmt::format(R"("n":{},"ack":"")", std::to_integer<unsigned>(message.back()));
+  return record;
+}
+
+/// A harmless question as a script, from what is asked to measure latencies. Of a server it is
+/// asked on a connection of its own, after `stop`.
+Script harmless_script(LinkKind kind, std::vector<Bytes> messages, Messages stop) {
+  Script script;
+  Instant time{};
+  if (kind == LinkKind::kSession) {
+    script.push_back(border("connect", "ok", time));
+    time += kPauseAfterQuestion;
+    messages.insert(messages.begin(), stop.begin(), stop.end());
+  }
+  for (const auto& message : messages) {
+    if (kind == LinkKind::kBus) {
+      script.push_back(transaction(message, time));
+    } else {
+      script.push_back({.time = time,
+                        .kind = kind,
+                        .direction = Direction::kToDevice,
+                        .id = kind == LinkKind::kSession ? kOwnConnection : 0,
+                        .bytes = {message.begin(), message.end()}});
+    }
+    time += kPauseAfterQuestion;
+  }
+  // What is answered comes before the end: something has to be at the end.
+  if (kind == LinkKind::kSession) {
+    script.push_back(border("disconnect", "client-close", time + 100ms));
+  } else if (!script.empty()) {
+    const auto again = script;
+    for (auto record : again) {
+      record.time += time.time_since_epoch();
+      script.push_back(std::move(record));
+    }
+  }
+  return script;
+}
+
+// Who is there: on a bus, who acknowledges.
+std::vector<std::uint32_t> addresses_on(BusPort& port) {
+  constexpr std::uint8_t kFirst = 8;  // those below and above are reserved
+  constexpr std::uint8_t kLast = 119;
+  std::vector<std::uint32_t> there;
+  for (auto address = kFirst; address <= kLast; ++address) {
+    const auto reply = port.start(BusAddress{address}, Access::kWrite);
+    (void)port.stop();
+    if (reply && *reply == Ack::kAck) there.push_back(address);
+  }
+  return there;
+}
+template <class Port>
+std::vector<std::uint32_t> addresses_on(Port& /*port*/) {
+  return {};
+}
+
+template <class Kind>
+LinkKind link_of() {
+  if (std::is_same_v<Kind, OnServer>) return LinkKind::kSession;
+  return std::is_same_v<Kind, OnBus> ? LinkKind::kBus : LinkKind::kStream;
+}
+
+/// Leaves out what the guard would refuse, and what follows nothing then.
+template <class Kind>
+auto permit_of(const Kind& kind, const Permissions& granted) {
+  return [make_judge = kind.make_judge, granted](Script& script) {
+    std::map<std::uint32_t, std::unique_ptr<Judge>> judges;
+    std::erase_if(script, [&](const KeptRecord& record) {
+      if (record.kind == LinkKind::kEvents) return false;
+      auto& judge = judges[record.kind == LinkKind::kSession ? record.id : 0];
+      if (!judge) judge = make_judge();
+      judge->set_time(record.time);
+      auto message = record.bytes;
+      if (record.kind == LinkKind::kBus) {
+        const BusAddress address{static_cast<std::uint8_t>(record.id)};
+        message.insert(message.begin(), campaign::is_sent(record)
+                                            ? head_of(write_to(address, {}))
+                                            : head_of(read_from(address, {})));
+      }
+      const auto refusal = judge->judge(Bytes{message}, granted);
+      return refusal && refusal->cause == Refusal::Cause::kRequest;
+    });
+  };
+}
+
+template <class Port>
+Outcome<Rig<Port>> open_fresh(const Wiring<Port>& wiring, const RigOptions& how) {
+  return Rig<Port>::open(wiring, how);
+}
+
+}  // namespace
+
+Outcome<Material> material_of(const Device& device, const RigOptions& how, const RigOptions& model,
+                              Duration longest) {
+  return std::visit(
+      [&](const auto& kind) -> Outcome<Material> {
+        using Kind = std::remove_cvref_t<decltype(kind)>;
+        auto rig = open_fresh(wiring_of(device, kind), model);
+        if (!rig) return tl::unexpected{rig.error()};
+        Material material{.kind = link_of<Kind>(),
+                          .make_dissector = device.make_dissector,
+                          .draw_session = device.draw_session,
+                          .harmless = {},
+                          .seal = device.fuzz.seal,
+                          .addresses = addresses_on(rig->port()),
+                          .has_hands = how.target.is_emulated(),
+                          .has_operations = how.target.is_emulated(),
+                          .longest = longest,
+                          .least_gap = how.target.is_emulated() ? Duration{} : kLeastGapLive};
+        auto probe = kind.make_probe(rig->port(), model.target.text);
+        if (!probe) return tl::unexpected{probe.error()};
+        const auto request = (*probe)->request();
+        // An arm goes on without its client, so that of a real one is stopped after each case. The
+        // model gets the same; what the guard did by itself it would not.
+        const auto judge = kind.make_judge();
+        material.harmless = harmless_script(material.kind, {request.begin(), request.end()},
+                                            how.target.is_emulated() ? Messages{} : judge->stop());
+        if (!how.target.is_emulated()) material.permit = permit_of(kind, how.permissions);
+        return material;
+      },
+      device.port);
+}
+
+std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions& how,
+                                          const RigOptions& model, const Hand& hand,
+                                          Duration trailing) {
+  return std::visit(
+      [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
+        using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
+        campaign::StageSetup<Port> setup{
+            .make_target = [&device, &kind,
+                            how] { return open_fresh(wiring_of(device, kind), how); },
+            .make_model = [&device, &kind,
+                           model] { return open_fresh(wiring_of(device, kind), model); },
+            .restart = {},
+            .is_emulated = how.target.is_emulated(),
+            .how = {.touches_of = device.replay.touches_of, .trailing = trailing}};
+        if (hand.has("restart") && !how.target.is_emulated()) {
+          setup.restart = [hand] { return hand.set("restart", 1); };
+        }
+        return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
+      },
+      device.port);
+}
+
+Outcome<ComparisonRules> live_rules_of(const Device& device) {
+  constexpr std::string_view kAnyDevice = "time_ms = 100\norder = \"free\"\n";
+  const auto own = device.fuzz.live_rules;
+  return ComparisonRules::parse(own.empty() ? kAnyDevice : own,
+                                fmt::format("the rules of {}", device.name));
+}
+
+std::string port_name_of(const Device& device) {
+  constexpr std::array kNames{"OnStream", "OnServer", "OnBus"};
+  return kNames.at(device.port.index());
+}
+
+Outcome<void> copy_into(const std::string& path, const campaign::CampaignFacts& facts,
+                        const campaign::CampaignState& state,
+                        const std::vector<std::string>& from) {
+  namespace fs = std::filesystem;
+  const auto folder = campaign::Folder::open(path, facts);
+  if (!folder) return tl::unexpected{folder.error()};
+  for (const auto& one : from) {
+    for (const auto* const part : {"findings", "worthy"}) {
+      constexpr auto kHow = fs::copy_options::skip_existing | fs::copy_options::recursive;
+      std::error_code error;
+      fs::copy(fs::path{one} / part, fs::path{path} / part, kHow, error);
+      if (error) return problem(ErrorCode::kCannotWrite, path, error.message());
+    }
+  }
+  return folder->keep(state);
+}
+
+}  // namespace armjig::cli

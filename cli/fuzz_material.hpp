@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/device.hpp"
+#include "conformance/bench.hpp"
+#include "emulators/campaign/author.hpp"
+#include "emulators/campaign/folder.hpp"
+#include "emulators/campaign/stage.hpp"
+#include "harness/compare/rules.hpp"
+
+namespace armjig::cli {
+
+/// What cases for that target are made of: of the entry, and of the model, who is asked which
+/// devices are on its bus. No case of it is longer. Problems: those of the model.
+[[nodiscard]] Outcome<campaign::Material> material_of(const Device& device, const RigOptions& how,
+                                                      const RigOptions& model, Duration longest);
+
+/// Target and model. What comes later than a case by `trailing` is not heard any more.
+[[nodiscard]] std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions& how,
+                                                        const RigOptions& model, const Hand& hand,
+                                                        Duration trailing);
+
+/// In what a device that is not emulated may differ from its model. Problems: as for
+/// `ComparisonRules::parse`.
+[[nodiscard]] Outcome<ComparisonRules> live_rules_of(const Device& device);
+
+/// `OnStream`, `OnServer` or `OnBus`.
+[[nodiscard]] std::string port_name_of(const Device& device);
+
+/// A folder with all of that, the recordings of findings out of the first folder that has them.
+[[nodiscard]] Outcome<void> copy_into(const std::string& path, const campaign::CampaignFacts& facts,
+                                      const campaign::CampaignState& state,
+                                      const std::vector<std::string>& from);
+
+}  // namespace armjig::cli

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "emulators/campaign/script.hpp"
+#include "emulators/sessions/dice.hpp"
+#include "emulators/sessions/sessions.hpp"
+
+namespace armjig::campaign {
+
+/// What scripts are made of: all that is known of a device.
+struct Material {
+  LinkKind kind{};  ///< of its link
+  MakeDissector make_dissector{};
+  DrawSession draw_session{};  ///< nullptr: scripts begin with what is harmless
+  /// One harmless exchange. Each case ends with it, as the question whether the device is well.
+  Script harmless;
+  /// Makes lengths and checksums of a message right again; nullptr: it has none, or nobody can.
+  void (*seal)(std::span<std::byte> message){};
+  std::vector<std::uint32_t> addresses{};  ///< of a bus: who is there
+  /// Leaves out of a script what may not be sent; empty: all may.
+  std::function<void(Script& script)> permit{};
+  bool has_hands = false;      ///< what is beside the link can be done
+  bool has_operations = true;  ///< of a bus: transactions may have any form
+  Duration longest{};          ///< of a script
+  Duration least_gap{};        ///< between two things that are done
+};
+
+/// Writes scripts: sessions of the device drawn at random, and what is made of those that showed
+/// something, by changes that no program means: other fields, bytes, cuts, orders, times,
+/// repetitions.
+class Author {
+ public:
+  /// `material` outlives this.
+  explicit Author(const Material& material) : material_{material} {}
+
+  /// The script of that seed. `worthy` are those that showed something.
+  [[nodiscard]] Script draw(std::uint64_t seed, const std::vector<Script>& worthy) const;
+
+ private:
+  using Dice = sessions::Dice;
+  using Change = void (Author::*)(Dice& dice, Script& script) const;
+
+  [[nodiscard]] Script fresh(Dice& dice) const;
+  [[nodiscard]] Script harmless_ones(Dice& dice) const;
+  void change_field(Dice& dice, Script& script) const;
+  void change_bytes(Dice& dice, Script& script) const;
+  void cut_bytes(Dice& dice, Script& script) const;
+  void add_bytes(Dice& dice, Script& script) const;
+  void split(Dice& dice, Script& script) const;
+  void repeat(Dice& dice, Script& script) const;
+  void leave_out(Dice& dice, Script& script) const;
+  void swap(Dice& dice, Script& script) const;
+  void move_time(Dice& dice, Script& script) const;
+  void hurry(Dice& dice, Script& script) const;
+  void fit(Dice& dice, Script& script) const;
+
+  const Material& material_;
+};
+
+}  // namespace armjig::campaign

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/campaign.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "emulators/campaign/shrink.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+using WallClock = std::chrono::steady_clock;
+
+/// Before the question whether the device is well.
+constexpr Duration kPause = 20ms;
+/// So many findings about one part of an answer are enough; more are the same seen elsewhere.
+constexpr int kMostOfOnePart = 3;
+
+/// A seed of its own for each case of each share (splitmix64).
+std::uint64_t seed_of(const CampaignOptions& options, std::uint64_t number) {
+  auto mixed = options.seed +
+               (number * options.share.count + options.share.index) * 0x9E37'79B9'7F4A'7C15ULL;
+  mixed = (mixed ^ mixed >> 30U) * 0xBF58'476D'1CE4'E5B9ULL;
+  mixed = (mixed ^ mixed >> 27U) * 0x94D0'49BB'1331'11EBULL;
+  return mixed ^ mixed >> 31U;
+}
+
+bool is_same(const Symptom& one, const Symptom& other) {
+  return one.answer == other.answer &&
+         std::ranges::find_first_of(one.parts, other.parts) != one.parts.end();
+}
+
+std::string sentence_of(const Symptom& symptom, const Script& script, const Script& harmless,
+                        MakeDissector make_dissector) {
+  constexpr std::size_t kMostWords = 4;
+  std::vector<std::string> words;
+  const auto own = script.size() - std::min(script.size(), harmless.size());
+  for (std::size_t i = 0; i < own && script[i].time <= symptom.time; ++i) {
+    auto one = words_of(script[i], make_dissector);
+    if (words.empty() || words.back() != one) words.push_back(std::move(one));
+  }
+  if (words.size() > kMostWords) {
+    words.erase(words.begin() + 1, words.end() - (kMostWords - 1));
+    words.insert(words.begin() + 1, "...");
+  }
+  const auto before =
+      words.empty() ? std::string{} : fmt::format("after {}, ", fmt::join(words, ", "));
+  return fmt::format("{}{} is answered with {}: {}{}", before, symptom.asked, symptom.answer,
+                     symptom.actual,
+                     symptom.expected.empty() ? "" : " instead of " + symptom.expected);
+}
+
+class Campaign {
+ public:
+  Campaign(Stage& stage, const Material& material, const CampaignOptions& options,
+           CampaignState& state, const CampaignListener& listener)
+      : stage_{stage},
+        material_{material},
+        options_{options},
+        state_{state},
+        listener_{listener},
+        author_{material},
+        excuses_{options.excuses} {
+    for (const auto& finding : state.findings) excuse(finding);
+  }
+
+  [[nodiscard]] Outcome<void> run() {
+    if (auto begun = begin(); !begun) return begun;
+    const auto end = options_.first_case + options_.most_cases;
+    for (auto number = options_.first_case; number < end && !options_.must_stop(); ++number) {
+      if (stage_.can_reset() && history_count_ >= options_.cases_between_resets) {
+        if (auto begun = start_again(); !begun) return begun;
+      }
+      if (auto done = play_case(number); !done) return done;
+      state_.passed = passed_before_ + since_begin();
+      if (listener_.on_case) listener_.on_case(state_);
+      if (options_.stops_at_first && has_news()) return {};
+    }
+    return {};
+  }
+
+ private:
+  struct Seen {
+    BothHeard heard;
+    std::optional<Symptom> symptom;
+  };
+
+  [[nodiscard]] bool has_news() const {
+    return std::ranges::any_of(state_.findings,
+                               [](const Finding& finding) { return finding.known.empty(); });
+  }
+
+  /// What scripts of before have shown is no news.
+  [[nodiscard]] Outcome<void> begin() {
+    if (auto begun = start_again(); !begun) return begun;
+    for (const auto& script : state_.worthy) {
+      if (options_.must_stop()) break;
+      const auto seen = see(script);
+      if (seen) (void)state_.shown.add(messages_in(*seen));
+      if (auto begun = stage_.reset(); !begun) return begun;
+    }
+    return {};
+  }
+
+  [[nodiscard]] Outcome<void> start_again() {
+    history_.clear();
+    history_count_ = 0;
+    if (auto begun = stage_.reset(); !begun) return begun;
+    return stage_.can_reset() ? Outcome<void>{} : meet();
+  }
+
+  /// A device that nobody can start again is where it is. Of what it shows then and a new one does
+  /// not, nothing can be said.
+  [[nodiscard]] Outcome<void> meet() {
+    constexpr int kMostParts = 50;
+    for (int left = kMostParts; left > 0; --left) {
+      const auto seen = see({});
+      if (!seen) return tl::unexpected{seen.error()};
+      if (seen->heard.target.end) return tl::unexpected{*seen->heard.target.end};
+      if (!seen->symptom) return {};
+      if (left == kMostParts) {  // perhaps only the models have gone astray
+        if (auto renewed = stage_.renew_models(); !renewed) return renewed;
+        continue;
+      }
+      pass_over(*seen->symptom);
+    }
+    return {};
+  }
+  void pass_over(const Symptom& symptom) {
+    for (const auto& part : symptom.parts) excuses_.add({}, symptom.answer, part);
+    state_.passed_over.push_back(
+        fmt::format("{}: {} instead of {}", symptom.answer, symptom.actual, symptom.expected));
+  }
+
+  [[nodiscard]] Script with_question(const Script& script) const {
+    return joined(with_ends(script), material_.harmless, kPause);
+  }
+
+  [[nodiscard]] Outcome<Seen> see(const Script& script) {
+    const auto whole = with_question(script);
+    auto heard = stage_.play(whole);
+    if (!heard) return tl::unexpected{heard.error()};
+    auto symptom = symptom_of(whole, *heard, options_.judging, excuses_);
+    return Seen{*std::move(heard), std::move(symptom)};
+  }
+
+  [[nodiscard]] RecordedMessages messages_in(const Seen& seen) const {
+    return messages_of(seen.heard.target.said, material_.make_dissector);
+  }
+
+  [[nodiscard]] Outcome<void> play_case(std::uint64_t number) {
+    const auto script = author_.draw(seed_of(options_, number), state_.worthy);
+    auto seen = see(script);
+    ++state_.cases;
+    if (!seen) {
+      if (seen.error().code != ErrorCode::kForbidden) return tl::unexpected{seen.error()};
+      ++state_.refused;
+      return start_again();
+    }
+    if (seen->symptom) return look_into(script, *seen->symptom, number);
+    history_ = joined(std::move(history_), script, kPause);
+    ++history_count_;
+    if (state_.shown.add(messages_in(*seen))) {
+      state_.worthy.push_back(script);
+      if (listener_.on_worthy) listener_.on_worthy(script, number);
+    }
+    return {};
+  }
+
+  /// Whether the symptom comes again on devices that are as new.
+  [[nodiscard]] Outcome<bool> shows(const Script& script, const Symptom& symptom) {
+    if (auto begun = stage_.reset(); !begun) return tl::unexpected{begun.error()};
+    auto seen = see(script);
+    if (!seen) return tl::unexpected{seen.error()};
+    const bool is_there = seen->symptom && is_same(*seen->symptom, symptom);
+    if (is_there) last_seen_ = *std::move(seen);
+    return is_there;
+  }
+
+  /// The same, as often as it takes to be sure.
+  [[nodiscard]] Outcome<bool> shows_surely(const Script& script, const Symptom& symptom) {
+    for (int left = options_.confirmations; left > 1; --left) {
+      auto is_there = shows(script, symptom);
+      if (!is_there || !*is_there) return is_there;
+    }
+    return shows(script, symptom);
+  }
+
+  [[nodiscard]] Outcome<void> look_into(Script script, const Symptom& symptom,
+                                        std::uint64_t number) {
+    const auto found_after = passed_before_ + since_begin();
+    auto is_there = shows_surely(script, symptom);
+    if (is_there && !*is_there && !history_.empty()) {
+      script = joined(history_, script, kPause);
+      is_there = shows_surely(script, symptom);
+    }
+    if (!is_there) return tl::unexpected{is_there.error()};
+    if (!*is_there) {
+      ++state_.unsettled;
+      state_.last_unsettled = symptom.key();
+      return start_again();
+    }
+    Finding finding{.symptom = symptom,
+                    .sentence = {},
+                    .script = {},
+                    .answers = {},
+                    .case_number = number,
+                    .found_size = script.size(),
+                    .found_after = found_after};
+    auto seen_first = last_seen_;
+    // One that nobody can start again may be left changed for good.
+    const auto always = stage_.can_reset() ? Outcome<bool>{false} : shows({}, symptom);
+    if (!always) return tl::unexpected{always.error()};
+    auto short_one = *always ? Outcome<Script>{script} : made_short(script, symptom);
+    if (!short_one) return tl::unexpected{short_one.error()};
+    auto is_sure = *always ? Outcome<bool>{false} : shows_surely(*short_one, symptom);
+    if (!is_sure) return tl::unexpected{is_sure.error()};
+    if (!*is_sure) {  // rather long than wrong
+      short_one = std::move(script);
+      last_seen_ = std::move(seen_first);
+    }
+    complete(finding, *std::move(short_one));
+    excuse(finding);
+    excuse(symptom, symptom.asked);
+    if (listener_.on_finding) listener_.on_finding(finding);
+    state_.findings.push_back(std::move(finding));
+    return start_again();
+  }
+
+  [[nodiscard]] Outcome<Script> made_short(Script script, const Symptom& symptom) {
+    std::optional<Problem> failure;
+    std::size_t attempts = 0;
+    const auto begun = WallClock::now();
+    const auto may_go_on = [&] {
+      return !failure && attempts < options_.most_attempts && !options_.must_stop() &&
+             WallClock::now() - begun < options_.most_shrinking;
+    };
+    const Shows shows_it = [&](const Script& other) {
+      ++attempts;
+      auto is_there = shows(other, symptom);
+      if (!is_there && is_there.error().code != ErrorCode::kForbidden) failure = is_there.error();
+      return is_there && *is_there;
+    };
+    auto short_one = shrink(std::move(script), material_.harmless, material_.make_dissector,
+                            shows_it, may_go_on);
+    if (failure) return tl::unexpected{*failure};
+    return short_one;
+  }
+
+  /// `last_seen_` is of the shortest script that showed it.
+  void complete(Finding& finding, const Script& script) {
+    finding.script = with_question(script);
+    finding.symptom = *last_seen_.symptom;
+    finding.size = script.size();
+    if (!last_seen_.heard.models.empty()) finding.answers = last_seen_.heard.models.front().said;
+    finding.sentence =
+        sentence_of(finding.symptom, finding.script, material_.harmless, material_.make_dissector);
+    if (const auto* known = options_.known.find(finding.symptom)) finding.known = known->why;
+  }
+
+  /// What was found is not found again: after any question, if one message was enough for it.
+  void excuse(const Finding& finding) {
+    const auto sent = std::ranges::count_if(finding.script, is_sent);
+    const auto harmless = std::ranges::count_if(material_.harmless, is_sent);
+    excuse(finding.symptom, sent <= harmless + 1 ? std::string{} : finding.symptom.asked);
+  }
+  void excuse(const Symptom& symptom, const std::string& asked) {
+    for (const auto& part : symptom.parts) {
+      const bool is_enough = ++of_part_[symptom.answer + '\n' + part] >= 2 * kMostOfOnePart;
+      excuses_.add(is_enough ? std::string{} : asked, symptom.answer, part);
+    }
+  }
+
+  [[nodiscard]] Duration since_begin() const { return WallClock::now() - begun_; }
+
+  Stage& stage_;
+  const Material& material_;
+  const CampaignOptions& options_;
+  CampaignState& state_;
+  const CampaignListener& listener_;
+  Author author_;
+  Excuses excuses_;
+  std::map<std::string, int> of_part_;
+  Script history_;  ///< what was done since the last reset
+  std::size_t history_count_ = 0;
+  Seen last_seen_;
+  WallClock::time_point begun_ = WallClock::now();
+  Duration passed_before_ = state_.passed;
+};
+
+}  // namespace
+
+Outcome<void> run_campaign(Stage& stage, const Material& material, const CampaignOptions& options,
+                           CampaignState& state, const CampaignListener& listener) {
+  return Campaign{stage, material, options, state, listener}.run();
+}
+
+}  // namespace armjig::campaign

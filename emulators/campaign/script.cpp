@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/script.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "harness/capture/capture.hpp"
+#include "harness/core/hex.hpp"
+#include "harness/core/version.hpp"
+#include "harness/link/bus_port.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+std::string event_of(const KeptRecord& record) {
+  auto name = text_in(record, "dir");
+  return name.empty() ? text_in(record, "op") : name;
+}
+
+bool is_border(std::string_view event) { return event == "connect" || event == "disconnect"; }
+
+/// Whether the host does it.
+bool is_done_by_host(const KeptRecord& record) {
+  switch (record.kind) {
+    case LinkKind::kStream:
+    case LinkKind::kSession:
+      return record.direction == Direction::kToDevice;
+    case LinkKind::kBus:
+      return true;
+    case LinkKind::kCan:
+      return false;
+    case LinkKind::kEvents:
+      break;
+  }
+  return !text_in(record, "text").starts_with("device-") && event_of(record) != "note";
+}
+
+/// A read that says how much is wanted, and nothing of what came.
+KeptRecord without_answer(KeptRecord record) {
+  record.time =
+      Instant{std::chrono::floor<std::chrono::microseconds>(record.time.time_since_epoch())};
+  if (record.kind != LinkKind::kBus) return record;
+  const bool goes_on = record.details.find(R"("stop":false)") != std::string::npos;
+  const bool is_read = record.direction == Direction::kFromDevice;
+  const auto wanted = std::max<std::int64_t>(std::ssize(record.bytes), number_in(record, "n", 0));
+  record.details = is_read ? fmt::format(R"("n":{},"ack":"")", wanted) : R"("ack":"")";
+  if (goes_on) record.details += R"(,"stop":false)";
+  if (is_read) record.bytes.clear();
+  return record;
+}
+
+/// The message by its name and by the field that says most of it, one with named values, as a
+/// command has.
+std::string choice_in(const Message& message) {
+  for (const auto& field : message.fields) {
+    if (field.encoding != Encoding::kCode || field.values.empty()) continue;
+    const auto value = field_value(field, message.raw);
+    const auto named = std::ranges::find(field.values, value, &NamedValue::value);
+    const auto word =
+        named == field.values.end() ? std::to_string(value) : std::string{named->name};
+    return word == message.name ? word : fmt::format("{} {}", message.name, word);
+  }
+  return std::string{message.name};
+}
+
+/// The events of both sides as those of one recording: what is answered comes after what was asked.
+std::vector<KeptRecord> merged(const Script& script, const std::vector<KeptRecord>& answers) {
+  std::vector<KeptRecord> all;
+  // A transaction, and how a connection began, are among the answers.
+  std::ranges::copy_if(script, std::back_inserter(all), [](const KeptRecord& one) {
+    return one.kind != LinkKind::kBus && event_of(one) != "connect";
+  });
+  std::ranges::copy(answers, std::back_inserter(all));
+  std::ranges::stable_sort(all, {}, &KeptRecord::time);
+  return all;
+}
+
+}  // namespace
+
+Outcome<Script> read_script(std::string_view recording, const std::string& where) {
+  const auto reader = CaptureReader::open(UserFile::of_text(recording, where), where);
+  if (!reader) return tl::unexpected{reader.error()};
+  Script script;
+  const auto read = for_each_record(**reader, [&](const CaptureRecord& record) -> Outcome<void> {
+    auto kept = KeptRecord::from(record);
+    if (is_done_by_host(kept)) script.push_back(without_answer(std::move(kept)));
+    return {};
+  });
+  if (!read) return tl::unexpected{read.error()};
+  const auto begin = script.empty() ? Instant{} : script.front().time;
+  for (auto& record : script) record.time -= begin.time_since_epoch();
+  return script;
+}
+
+Duration length_of(const Script& script) noexcept {
+  return script.empty() ? Duration{} : script.back().time.time_since_epoch();
+}
+
+Script joined(Script script, const Script& more, Duration pause) {
+  const auto begin = script.empty() ? Duration{} : length_of(script) + pause;
+  for (auto record : more) {
+    record.time += begin;
+    script.push_back(std::move(record));
+  }
+  return script;
+}
+
+Script with_ends(Script script) {
+  std::set<std::int64_t> open;
+  for (const auto& record : script) {
+    if (record.kind == LinkKind::kSession) open.insert(record.id);
+    if (record.kind != LinkKind::kEvents) continue;
+    const auto id = number_in(record, "conn", 0);
+    const auto event = event_of(record);
+    if (event == "connect") open.insert(id);
+    if (event == "disconnect" && text_in(record, "text") != "client-half-close") open.erase(id);
+  }
+  const auto end = Instant{length_of(script)};
+  for (const auto id : open) {
+    script.push_back(
+        {.time = end,
+         .kind = LinkKind::kEvents,
+         .direction = Direction::kToDevice,
+         .details = fmt::format(R"("dir":"disconnect","conn":{},"text":"client-close")", id)});
+  }
+  return script;
+}
+
+bool is_sent(const KeptRecord& record) noexcept {
+  return record.kind != LinkKind::kEvents && record.direction == Direction::kToDevice;
+}
+
+bool is_by_hand(const KeptRecord& record) {
+  return record.kind == LinkKind::kEvents && !is_border(event_of(record)) &&
+         event_of(record) != "recover";
+}
+
+std::vector<Message> messages_in(const KeptRecord& record, Dissector& dissector) {
+  std::vector<Message> messages;
+  if (!is_sent(record)) return messages;
+  auto bytes = record.bytes;
+  if (record.kind == LinkKind::kBus) {
+    const BusAddress address{static_cast<std::uint8_t>(record.id)};
+    bytes.insert(bytes.begin(), head_of(write_to(address, {})));
+  }
+  dissector.feed(Direction::kToDevice, record.time, bytes, messages);
+  return messages;
+}
+
+std::string words_of(const KeptRecord& record, MakeDissector make_dissector) {
+  if (record.kind == LinkKind::kEvents) {
+    auto words = event_of(record);
+    for (const auto* const key : {"name", "event", "call", "text"}) {
+      if (const auto more = text_in(record, key); !more.empty() && more != "ok")
+        words += " " + more;
+    }
+    return words;
+  }
+  if (!is_sent(record)) return fmt::format("read of {} bytes", number_in(record, "n", 0));
+  const auto dissector = make_dissector();
+  auto messages = messages_in(record, *dissector);
+  if (messages.empty()) dissector->finish(messages);
+  if (messages.empty()) return fmt::format("{} bytes", record.bytes.size());
+  const auto& last = messages.back();
+  const auto word = last.fault.empty() ? choice_in(last) : "noise";
+  return messages.size() == 1
+             ? word
+             : fmt::format("{} messages at once, the last {}", messages.size(), word);
+}
+
+std::string to_recording(const RecordingFacts& facts, const Script& script,
+                         const std::vector<KeptRecord>& answers) {
+  // What says "capture" is like what --capture wrote: all that is needed for it is in the header.
+  const nlohmann::ordered_json header{{"format", "golden-trace/1"},
+                                      {"device", facts.device},
+                                      {"title", "capture"},
+                                      {"source", facts.source},
+                                      {"target", facts.target}};
+  const auto writer = make_capture_writer(CaptureFormat::kLines);
+  std::string text;
+  const CaptureHeader head{header.dump(), facts.device, 0};
+  if (!writer->begin(head, text)) return {};
+  for (const auto& record : merged(script, answers)) {
+    const CaptureLink link{facts.device, facts.device, record.kind};
+    (void)writer->add(record.on(link), {}, text);  // lines hold whatever there is
+  }
+  return text;
+}
+
+}  // namespace armjig::campaign

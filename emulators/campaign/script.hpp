@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "emulators/replay/kept_record.hpp"
+#include "harness/core/error.hpp"
+#include "harness/wire/dissector.hpp"
+
+/// Cases drawn at random, played to a device and to a model of it, and what they show.
+namespace armjig::campaign {
+
+/// What is done to a device and when, since the case began: bytes, connections, transactions and
+/// inputs, in order of time. Nothing of what the device does.
+using Script = std::vector<KeptRecord>;
+
+/// What was done in a recording (any text that `CaptureReader` takes); `where` is for messages. CAN
+/// frames are left out, for no link carries them. Problems: those of the reader.
+[[nodiscard]] Outcome<Script> read_script(std::string_view recording, const std::string& where);
+
+/// When its last record is; 0 for none.
+[[nodiscard]] Duration length_of(const Script& script) noexcept;
+
+/// `more` after `script`, `pause` later.
+[[nodiscard]] Script joined(Script script, const Script& more, Duration pause);
+
+/// The script with an end to each connection that it leaves open.
+[[nodiscard]] Script with_ends(Script script);
+
+/// Bytes that go to the device, as opposed to what is read or done beside the link.
+[[nodiscard]] bool is_sent(const KeptRecord& record) noexcept;
+
+/// A record that sets an input of the device or does something else beside its link; not one that
+/// begins or ends a connection.
+[[nodiscard]] bool is_by_hand(const KeptRecord& record);
+
+/// What the record sends, as the device's dissector names it; of a bus with the byte of the
+/// address. Of no bytes: nothing.
+[[nodiscard]] std::vector<Message> messages_in(const KeptRecord& record, Dissector& dissector);
+
+/// The record in a few words, as in `command jog`.
+[[nodiscard]] std::string words_of(const KeptRecord& record, MakeDissector make_dissector);
+
+/// The script and what was said to it as a recording that `armjig replay` takes. `device` is its
+/// name, `target` where it was, `source` who asks.
+struct RecordingFacts {
+  std::string device;
+  std::string target;
+  std::string source;
+};
+[[nodiscard]] std::string to_recording(const RecordingFacts& facts, const Script& script,
+                                       const std::vector<KeptRecord>& answers);
+
+}  // namespace armjig::campaign

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/stage.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <thread>
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+void rest(StreamPort& port, Duration time) {
+  std::array<std::byte, 4096> buffer;
+  const auto end = port.now() + time;
+  for (;;) {
+    const auto size = port.read(buffer, end);
+    if (!size || *size == 0) return;
+  }
+}
+void rest(SessionSource& server, Duration time) { server.pause(time); }
+void rest(BusPort& port, Duration time) { port.wait_until(port.now() + time); }
+
+/// Whether it is there: a server is when it takes a client.
+bool greet(SessionSource& server) {
+  constexpr auto kPatience = 100ms;
+  const auto port = server.make_port();
+  if (!port->connect(port->now() + kPatience)) return false;
+  port->close();
+  rest(server, kPatience);
+  return true;
+}
+bool greet(Endpoint& /*port*/) { return true; }
+
+/// When a live device may have got each record, given when it left: then; when it should have left;
+/// what left within a short time, together; all a little later.
+using Guess = Script (*)(const Script& script, const std::vector<Instant>& passed);
+
+Script as_left(const Script& script, const std::vector<Instant>& passed) {
+  auto guessed = script;
+  for (std::size_t i = 0; i < std::min(script.size(), passed.size()); ++i) {
+    guessed[i].time = std::max(script[i].time, passed[i]);
+  }
+  return guessed;
+}
+
+Script as_meant(const Script& script, const std::vector<Instant>& /*passed*/) { return script; }
+
+Script in_bundles(const Script& script, const std::vector<Instant>& passed) {
+  constexpr Duration kNear = 1ms;
+  auto guessed = as_left(script, passed);
+  for (std::size_t i = 1; i < guessed.size(); ++i) {
+    if (guessed[i].time - guessed[i - 1].time < kNear) guessed[i].time = guessed[i - 1].time;
+  }
+  return guessed;
+}
+
+Script a_little_late(const Script& script, const std::vector<Instant>& passed) {
+  auto guessed = as_left(script, passed);
+  for (auto& record : guessed) record.time += 1ms;
+  return guessed;
+}
+
+constexpr std::array<Guess, 4> kGuesses{as_left, as_meant, in_bundles, a_little_late};
+
+Heard heard(Outcome<Played> played) {
+  if (!played) return {{}, played.error()};
+  std::ranges::stable_sort(played->actual, {}, &KeptRecord::time);
+  return {std::move(played->actual), std::nullopt};
+}
+
+}  // namespace
+
+template <class Port>
+Outcome<void> StageOn<Port>::renew_models() {
+  models_.clear();
+  for (std::size_t i = 0; i < (setup_.is_emulated ? 1 : kGuesses.size()); ++i) {
+    auto opened = setup_.make_model();
+    if (!opened) return tl::unexpected{opened.error()};
+    models_.push_back(*std::move(opened));
+    (void)greet(models_.back().port());
+  }
+  last_end_ = target_->port().now();
+  return {};
+}
+
+template <class Port>
+Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
+  const auto idle = target_->port().now() - last_end_;
+  auto played = play_host(target_->port(), script, setup_.how);
+  if (!played && played.error().code == ErrorCode::kForbidden) {
+    return tl::unexpected{played.error()};
+  }
+  const auto passed = played ? played->passed : std::vector<Instant>{};
+  BothHeard both{heard(std::move(played)), {}};
+  last_end_ = target_->port().now();
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    auto& model = models_[i].port();
+    if (idle > Duration{}) rest(model, idle);
+    const auto guessed = setup_.is_emulated ? script : kGuesses.at(i)(script, passed);
+    both.models.push_back(heard(play_host(model, guessed, setup_.how)));
+  }
+  return both;
+}
+
+template <class Port>
+Outcome<void> StageOn<Port>::make_target() {
+  constexpr auto kBetween = 20ms;
+  target_.reset();
+  if (was_open_ && setup_.restart && !setup_.restart()) {
+    return problem(ErrorCode::kNotFound, "--restart", "the command failed");
+  }
+  const auto begun = std::chrono::steady_clock::now();
+  for (;;) {
+    auto opened = setup_.make_target();
+    if (opened && greet(opened->port())) {
+      target_ = *std::move(opened);
+      was_open_ = true;
+      return {};
+    }
+    const bool may_come = was_open_ && std::chrono::steady_clock::now() - begun < setup_.patience;
+    if (!may_come && !opened) return tl::unexpected{opened.error()};
+    if (!may_come) return problem(ErrorCode::kRefused, "--target", "it takes no client; start it");
+    std::this_thread::sleep_for(kBetween);
+  }
+}
+
+template class StageOn<StreamPort>;
+template class StageOn<SessionSource>;
+template class StageOn<BusPort>;
+
+}  // namespace armjig::campaign

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emulators/campaign/script.hpp"
+#include "emulators/replay/host_role.hpp"
+#include "harness/rig/rig.hpp"
+
+namespace armjig::campaign {
+
+/// What one side said to a script.
+struct Heard {
+  std::vector<KeptRecord> said;  ///< in order of time
+  std::optional<Problem> end{};  ///< why its link ended in the middle; none: it did not
+};
+
+struct BothHeard {
+  Heard target;
+  std::vector<Heard> models;  ///< each of them is right
+};
+
+/// Where cases are played: a target, and beside it models of it that get the same at the same
+/// times. Of a live target nobody knows to the microsecond when something came, and in what pieces,
+/// so there are several models then, each of which gets it as it may have been.
+class Stage {
+ public:
+  Stage() = default;
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+  virtual ~Stage() = default;
+
+  /// Begins, and begins again: a target that is emulated or can be started again is as new, and so
+  /// are the models. Others stay where they are. Problems: those of opening them.
+  [[nodiscard]] virtual Outcome<void> reset() = 0;
+  /// Whether `reset` makes the target new.
+  [[nodiscard]] virtual bool can_reset() const = 0;
+  /// The models alone are as new. Problems: those of opening them.
+  [[nodiscard]] virtual Outcome<void> renew_models() = 0;
+
+  /// Plays it to both, where they are now, and listens a little longer. What ends a link is no
+  /// problem but heard; a problem is that the guard refused something (`kForbidden`).
+  [[nodiscard]] virtual Outcome<BothHeard> play(const Script& script) = 0;
+};
+
+/// How a target and its model are had.
+template <class Port>
+struct StageSetup {
+  std::function<Outcome<Rig<Port>>()> make_target;
+  std::function<Outcome<Rig<Port>>()> make_model;
+  /// Starts the program of a target that is not emulated again; false: that did not work. Empty:
+  /// nobody can.
+  std::function<bool()> restart;
+  bool is_emulated = false;
+  PlayHow how;
+  Duration patience = std::chrono::seconds{10};  ///< for one that was started again
+};
+
+/// On any kind of port.
+template <class Port>
+class StageOn final : public Stage {
+ public:
+  explicit StageOn(StageSetup<Port> setup) : setup_{std::move(setup)} {}
+
+  Outcome<void> reset() override {
+    if (target_ && !can_reset()) return {};
+    return make_target().and_then([this] { return renew_models(); });
+  }
+  [[nodiscard]] bool can_reset() const override { return setup_.is_emulated || setup_.restart; }
+  Outcome<void> renew_models() override;
+  Outcome<BothHeard> play(const Script& script) override;
+
+ private:
+  [[nodiscard]] Outcome<void> make_target();
+
+  StageSetup<Port> setup_;
+  std::optional<Rig<Port>> target_;
+  std::vector<Rig<Port>> models_;
+  Instant last_end_{};
+  bool was_open_ = false;
+};
+
+extern template class StageOn<StreamPort>;
+extern template class StageOn<SessionSource>;
+extern template class StageOn<BusPort>;
+
+}  // namespace armjig::campaign

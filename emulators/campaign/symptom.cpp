@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/symptom.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "emulators/campaign/talk.hpp"
+#include "harness/compare/recording_diff.hpp"
+#include "harness/wire/brief.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+std::string key_of(std::string_view asked, std::string_view answer, std::string_view part) {
+  return fmt::format("{}\n{}\n{}", asked, answer, part);
+}
+
+/// What was done last before that moment.
+std::string asked_before(const Script& script, Instant time, MakeDissector make_dissector) {
+  const KeptRecord* last = nullptr;
+  for (const auto& record : script) {
+    if (record.time > time) break;
+    if (record.kind != LinkKind::kBus || is_sent(record) || last == nullptr) last = &record;
+  }
+  return last == nullptr ? "the beginning" : words_of(*last, make_dissector);
+}
+
+std::string name_of(const RecordedMessage& one) {
+  if (!one.message.fault.empty()) return "noise";
+  if (one.message.name == "events") return "connection";
+  return std::string{one.message.name};
+}
+
+/// What the difference is about: names of fields, or what became of the message.
+std::vector<std::string> parts_of(const RecordingDifference& difference) {
+  if (difference.change != Change::kChanged) return {std::string{to_string(difference.change)}};
+  std::vector<std::string> parts;
+  for (const auto& what : difference.what) parts.push_back(what.substr(0, what.find(':')));
+  return parts;
+}
+
+/// The halves of `NAME: BEFORE, AFTER` sentences, as far as they are about these parts.
+std::string side_of(const RecordedMessage* message) {
+  if (message == nullptr) return "nothing";
+  constexpr std::size_t kEnough = 240;
+  auto line = message->message.name == "events" ? message->note : to_line(message->message);
+  if (!message->note.empty() && message->message.name != "events") line += " " + message->note;
+  if (line.size() > kEnough) line = line.substr(0, kEnough) + "...";
+  return line;
+}
+
+/// In what both differ, as sentences of the comparison have it.
+std::pair<std::string, std::string> sides_of(const RecordingDifference& difference,
+                                             const std::vector<std::string>& parts) {
+  if (difference.change != Change::kChanged) {
+    return {side_of(difference.before), side_of(difference.after)};
+  }
+  std::string expected;
+  std::string actual;
+  for (const auto& what : difference.what) {
+    const auto colon = what.find(": ");
+    const auto comma = what.rfind(", ");
+    if (colon == what.npos || comma == what.npos || comma < colon) continue;
+    const auto name = what.substr(0, colon);
+    if (std::ranges::find(parts, name) == parts.end()) continue;
+    const auto blank = expected.empty() ? "" : "; ";
+    expected += fmt::format("{}{} {}", blank, name, what.substr(colon + 2, comma - colon - 2));
+    actual += fmt::format("{}{} {}", blank, name, what.substr(comma + 2));
+  }
+  return {expected, actual};
+}
+
+class Judge {
+ public:
+  Judge(const Script& script, const Judging& judging, const Excuses& excuses)
+      : script_{script}, judging_{judging}, excuses_{excuses} {}
+
+  [[nodiscard]] std::optional<Symptom> of_end(const BothHeard& heard) const {
+    const auto has_ended = [](const Heard& model) { return model.end.has_value(); };
+    if (std::ranges::any_of(heard.models, has_ended)) return std::nullopt;
+    const auto last = script_.empty() ? Instant{} : script_.back().time;
+    const auto why = std::string{describe(heard.target.end->code)};
+    return excused({.asked = "the case",
+                    .answer = "the end of the link",
+                    .parts = {why},
+                    .expected = "an answer",
+                    .actual = why,
+                    .time = last});
+  }
+
+  [[nodiscard]] std::optional<Symptom> of_difference(const Heard& target,
+                                                     const Heard& model) const {
+    const auto before = messages_of(model.said, judging_.make_dissector);
+    const auto after = messages_of(target.said, judging_.make_dissector);
+    const auto end = script_.empty() ? Instant{} : script_.back().time;
+    for (const auto& difference : diff(before, after, judging_.rules)) {
+      const bool is_one_sided = difference.change != Change::kChanged;
+      if (is_one_sided && difference.time() > end + judging_.horizon) continue;
+      const auto& message = difference.before != nullptr ? *difference.before : *difference.after;
+      const auto parts = parts_of(difference);
+      auto symptom =
+          excused({.asked = asked_before(script_, difference.time(), judging_.make_dissector),
+                   .answer = name_of(message),
+                   .parts = parts,
+                   .expected = {},
+                   .actual = {},
+                   .time = difference.time()});
+      if (!symptom) continue;
+      std::tie(symptom->expected, symptom->actual) = sides_of(difference, symptom->parts);
+      return symptom;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// The symptom without what is no news; none if nothing is left.
+  [[nodiscard]] std::optional<Symptom> excused(Symptom symptom) const {
+    std::erase_if(symptom.parts, [&](const std::string& part) {
+      return excuses_.has(symptom.asked, symptom.answer, part);
+    });
+    if (symptom.parts.empty()) return std::nullopt;
+    return symptom;
+  }
+
+  const Script& script_;
+  const Judging& judging_;
+  const Excuses& excuses_;
+};
+
+}  // namespace
+
+std::string Symptom::key() const {
+  return fmt::format("after {}: {}: {}", asked, answer, fmt::join(parts, ", "));
+}
+
+void Excuses::add(std::string_view asked, std::string_view answer, std::string_view part) {
+  keys_.insert(key_of(asked, answer, part));
+}
+
+bool Excuses::has(std::string_view asked, std::string_view answer, std::string_view part) const {
+  return keys_.contains(key_of(asked, answer, part)) || keys_.contains(key_of({}, answer, part));
+}
+
+std::optional<Symptom> symptom_of(const Script& script, const BothHeard& heard,
+                                  const Judging& judging, const Excuses& excuses) {
+  const Judge judge{script, judging, excuses};
+  if (heard.target.end) return judge.of_end(heard);
+  std::optional<Symptom> latest;
+  for (const auto& model : heard.models) {
+    auto symptom = judge.of_difference(heard.target, model);
+    if (!symptom) return std::nullopt;
+    if (!latest || latest->time < symptom->time) latest = std::move(symptom);
+  }
+  return latest;
+}
+
+}  // namespace armjig::campaign

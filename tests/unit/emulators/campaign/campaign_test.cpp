@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/campaign.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "cli/device.hpp"
+#include "cli/devices/devices.hpp"
+#include "cli/fuzz_material.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Asked {
+  std::string device;
+  std::string fault;
+  std::uint64_t cases = 60;
+  std::uint64_t seed = 1;
+  Known known{};
+};
+
+RigOptions emulated(const std::string& options) {
+  RigOptions rig;
+  rig.target = parse_target("emulated:" + options).value();
+  return rig;
+}
+
+/// A campaign against an emulated device with that fault, in virtual time.
+CampaignState run(const Asked& asked) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), asked.device);
+  const auto target = emulated(asked.fault.empty() ? "" : "?fault=" + asked.fault);
+  const auto model = emulated("");
+  const auto material = cli::material_of(device, target, model, 20s).value();
+  const auto stage = cli::stage_of(device, target, model, Hand{}, 20ms);
+  CampaignState state;
+  const CampaignOptions options{.seed = asked.seed,
+                                .most_cases = asked.cases,
+                                .judging = {device.make_dissector, {}, 20ms},
+                                .known = asked.known,
+                                .most_shrinking = 1h,
+                                .stops_at_first = true};
+  EXPECT_TRUE(run_campaign(*stage, material, options, state, {}));
+  return state;
+}
+
+TEST(Campaign, FindsNothingInASoundDevice) {
+  for (const auto& device : cli::shipped_devices()) {
+    const auto state = run({std::string{device.name}, "", 30});
+    EXPECT_TRUE(state.findings.empty()) << device.name << ": " << state.findings.front().sentence;
+    EXPECT_EQ(state.cases, 30U) << device.name;
+    EXPECT_EQ(state.unsettled, 0U) << device.name;
+    EXPECT_GT(state.shown.answers(), 0U) << device.name;
+  }
+}
+
+TEST(Campaign, FindsADefectOnAStreamAndMakesItShort) {
+  const auto state = run({"parol6", "quirk:counters-reset-by-clear"});
+  ASSERT_EQ(state.findings.size(), 1U);
+  EXPECT_LE(state.findings.front().size, 3U);
+  EXPECT_NE(state.findings.front().sentence.find("clear_error"), std::string::npos);
+}
+
+TEST(Campaign, FindsADefectOfAServer) {
+  const auto state = run({"kinovazed", "missing:Rejected"});
+  ASSERT_EQ(state.findings.size(), 1U);
+  EXPECT_EQ(state.findings.front().symptom.answer, "Rejected");
+}
+
+TEST(Campaign, FindsADefectOnABus) {
+  const auto state = run({"morap", "quirk:checksum-ignored"});
+  ASSERT_EQ(state.findings.size(), 1U);
+  EXPECT_LE(state.findings.front().size, 5U);
+}
+
+TEST(Campaign, NeedsNoSessionsOfTheDevice) {
+  const auto state = run({"demo", "missing", 2'000});
+  ASSERT_EQ(state.findings.size(), 1U);
+}
+
+TEST(Campaign, PlaysTheSameCasesForTheSameSeed) {
+  const auto one = run({"parol6", "quirk:steps-lost", 20, 7});
+  const auto other = run({"parol6", "quirk:steps-lost", 20, 7});
+  ASSERT_EQ(one.findings.size(), 1U);
+  ASSERT_EQ(other.findings.size(), 1U);
+  EXPECT_EQ(one.findings.front().script, other.findings.front().script);
+  EXPECT_EQ(one.shown.answers(), other.shown.answers());
+}
+
+TEST(Campaign, TellsWhatIsKnown) {
+  const auto known = Known::parse("[[known]]\nsymptom = \"*\"\nwhy = \"all of it\"\n", "test");
+  const auto state = run({"parol6", "quirk:steps-lost", 5, 1, *known});
+  ASSERT_FALSE(state.findings.empty());
+  EXPECT_EQ(state.findings.front().known, "all of it");
+}
+
+}  // namespace
+}  // namespace armjig::campaign

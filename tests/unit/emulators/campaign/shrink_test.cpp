@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/shrink.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "harness/wire/demo/demo.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+KeptRecord byte_at(Duration time, unsigned value) {
+  return {.time = Instant{time},
+          .kind = LinkKind::kStream,
+          .direction = Direction::kToDevice,
+          .bytes = {static_cast<std::byte>(value)}};
+}
+
+Script bytes_up_to(unsigned count) {
+  Script script;
+  for (unsigned i = 0; i < count; ++i) script.push_back(byte_at(i * 10ms, i));
+  return script;
+}
+
+bool has(const Script& script, unsigned value) {
+  return std::ranges::any_of(script, [value](const KeptRecord& one) {
+    return std::ranges::count(one.bytes, static_cast<std::byte>(value)) > 0;
+  });
+}
+
+const auto kAlways = [] { return true; };
+
+TEST(Shrink, LeavesWhatMatters) {
+  const auto shorter = shrink(
+      bytes_up_to(100), {}, demo::make_dissector,
+      [](const Script& one) { return has(one, 17) && has(one, 83); }, kAlways);
+  ASSERT_EQ(shorter.size(), 2U);
+  EXPECT_TRUE(has(shorter, 17));
+  EXPECT_TRUE(has(shorter, 83));
+}
+
+TEST(Shrink, ShortensPausesThatDoNotMatter) {
+  const auto shorter = shrink(
+      bytes_up_to(3), {}, demo::make_dissector, [](const Script& one) { return one.size() == 3; },
+      kAlways);
+  EXPECT_EQ(length_of(shorter), 2ms);
+}
+
+TEST(Shrink, ShortensMessages) {
+  Script script{byte_at({}, 1)};
+  script.front().bytes.assign(40, std::byte{7});
+  const auto shorter = shrink(
+      script, {}, demo::make_dissector, [](const Script& one) { return has(one, 7); }, kAlways);
+  ASSERT_EQ(shorter.size(), 1U);
+  EXPECT_EQ(shorter.front().bytes.size(), 1U);
+}
+
+TEST(Shrink, EndsWhenItMayNotGoOn) {
+  int attempts = 0;
+  const auto script = bytes_up_to(50);
+  const auto shorter = shrink(
+      script, {}, demo::make_dissector,
+      [&](const Script&) {
+        ++attempts;
+        return false;
+      },
+      [&] { return attempts < 5; });
+  EXPECT_EQ(shorter, script);
+  EXPECT_EQ(attempts, 5);
+}
+
+}  // namespace
+}  // namespace armjig::campaign
