@@ -53,7 +53,10 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
        return value.choose(to.server.race,
                            {RaceOrder::kReplyFirst, RaceOrder::kEventFirst, RaceOrder::kRandom});
      }},
-    {{"call-us", "0..500000", "length of a call to the arm in microseconds; 600 if not given"},
+    {{"call-us",
+      "0..500000",
+      "length of a call to the arm in microseconds; 600 if not given",
+      {50, 50'000, 600, FitRange::Scale::kRatio, true}},
      [](Settings& to, const OptionValue& value) {
        std::chrono::microseconds time{};
        return value.take(time).map([&] { to.server.call_time = time; });

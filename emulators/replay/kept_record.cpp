@@ -24,4 +24,6 @@ std::int64_t number_in(const KeptRecord& record, const char* key, std::int64_t o
   return value.is_number_integer() ? value.get<std::int64_t>() : otherwise;
 }
 
+bool has_stop(const KeptRecord& record) { return member_of(record, "stop") != false; }
+
 }  // namespace armjig

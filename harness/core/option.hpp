@@ -25,6 +25,21 @@ namespace armjig {
 /// `NAME=VALUE` pairs that describe an emulated device.
 using DeviceOptions = std::map<std::string, std::string, std::less<>>;
 
+/// Where the figure that an option has lies in real devices. `armjig shadow fit` looks for it
+/// there.
+struct FitRange {
+  enum class Scale : std::uint8_t {
+    kLinear,
+    kRatio,  ///< twice as much is as far everywhere; `least` is above 0
+  };
+  double least{};
+  double most{};   ///< not above `least`: the option is no figure
+  double usual{};  ///< where the search begins
+  Scale scale{};
+  bool is_whole{};
+  std::size_t count = 1;  ///< of a list
+};
+
 /// An option as help, documents and completion show it. `values` is both shown and obeyed:
 ///
 ///     a|b|c    one of these words
@@ -36,6 +51,7 @@ struct OptionRow {
   std::string_view name;
   std::string_view values;
   std::string_view meaning;
+  FitRange fit{};
 };
 
 /// What somebody wrote for an option. Problems are `kBadValue` at `WHERE, NAME=VALUE`.
