@@ -24,11 +24,13 @@
 #include "cli/progress.hpp"
 #include "cli/reference.hpp"
 #include "cli/report_files.hpp"
+#include "cli/shadowing.hpp"
 #include "cli/signals.hpp"
 #include "cli/target_options.hpp"
 #include "cli/terminal.hpp"
 #include "conformance/run.hpp"
 #include "conformance/suite.hpp"
+#include "harness/capture/told_record.hpp"
 #include "harness/core/nearest.hpp"
 #include "harness/files/user_file.hpp"
 #include "harness/report/diff.hpp"
@@ -62,6 +64,7 @@ struct ConformanceOptions {
   std::string waivers;
   std::string explain;
   RunOptions run;
+  ShadowOptions shadow;
   ReportFiles files;
   std::string colour;
   bool list = false;
@@ -224,6 +227,13 @@ Exit run(const Device& device, const Suite& suite, ConformanceOptions options) {
   how->must_stop = must_stop;
   how->when_left = WhenLeft::kSayNothing;  // cases look at what an arm does without its client
   options.run.must_stop = must_stop;
+  auto shadow = LiveShadow::open(device, options.shadow, !how->target.is_emulated());
+  if (!shadow) return report(shadow.error());
+  if (*shadow) {
+    how->capture.listener = [&shadow](const CaptureRecord& record) {
+      tell(record, (*shadow)->overhearer());
+    };
+  }
   auto bench = open_bench(device, *how);
   if (!bench) return report(bench.error());
   (*bench)->set_hand(hand_of(options.hands));
@@ -259,6 +269,7 @@ Exit run(const Device& device, const Suite& suite, ConformanceOptions options) {
   fmt::print("{}\n", counts_line(result, style));
   if (result.coverage) fmt::print("judged {}\n", to_text(*result.coverage));
   print_skipped(result);
+  if (*shadow) (void)(*shadow)->conclude();
   fmt::print("{}", failures_text(result, style));
   files->put(result);
   return signals.has_come() ? signals.exit() : static_cast<Exit>(conclusion_of(result));
@@ -354,6 +365,7 @@ void add_conformance(CLI::App& app, Devices devices, Action& action) {
   add_report_files(*command, options->files);
   add_colour_option(*command, options->colour);
   command->add_flag("--list", options->list, "name the requirements and stop");
+  add_shadow_options(*command, options->shadow);
   add_diff(*command, action);
   add_conformance_mutants(*command, devices, action);
   command->callback([options, command, devices, &action] {

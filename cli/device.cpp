@@ -44,6 +44,15 @@ std::vector<std::string_view> missing_parts(const Device& device) {
   return missing;
 }
 
+Outcome<double> take_clock_rate(DeviceOptions& options, const std::string& where) {
+  const auto said = options.find(kClock.name);
+  if (said == options.end()) return 1;
+  double percent = 0;
+  const auto taken = OptionValue{kClock, said->second, where}.take(percent);
+  options.erase(said);
+  return taken.map([percent] { return 1 + percent / 100; });
+}
+
 std::string names_of(Devices devices) {
   std::string names;
   for (const auto& device : devices) {

@@ -15,6 +15,7 @@
 #include "conformance/mutation.hpp"
 #include "conformance/program_check.hpp"
 #include "conformance/suite.hpp"
+#include "emulators/memory/clocked.hpp"
 #include "emulators/memory/hosted.hpp"
 #include "emulators/memory/in_memory.hpp"
 #include "emulators/memory/serial_line.hpp"
@@ -113,6 +114,22 @@ struct Device {
 /// The option that every emulated device has: `like=FILE`, in place of all others.
 inline constexpr std::string_view kLike = "like";
 
+/// One more that every emulated device has, beside all others.
+inline constexpr OptionRow kClock{
+    "clock", "-10..10", "by how many percent its clock is fast; 0 if not given", {-2, 2, 0}};
+
+/// Takes that away from the options. Its seconds in a second, 1 if nobody says anything. Problems:
+/// `kBadValue`.
+[[nodiscard]] Outcome<double> take_clock_rate(DeviceOptions& options, const std::string& where);
+
+/// What is emulated, on a clock that is that much too fast.
+template <class Hosted>
+[[nodiscard]] Outcome<std::unique_ptr<Hosted>> with_clock(Outcome<std::unique_ptr<Hosted>> hosted,
+                                                          double rate) {
+  if (hosted && rate != 1) return put_on_clock(*std::move(hosted), {.rate = rate});
+  return hosted;
+}
+
 /// An emulated device like that of a recording: with the options that its header has, if it is of
 /// `--capture`, or as the header describes it. Problems: `kBadValue`: it cannot be read;
 /// `kUnsupported`: it does not say; those of `OnPort::set_up`.
@@ -125,7 +142,10 @@ template <class Kind>
   }
   if (kind.set_up != nullptr && !is_of_capture(recording->header)) return kind.set_up(*recording);
   return emulated_target_of(*recording).and_then(parse_target).and_then([&](const Target& target) {
-    return kind.emulate(target.options, target.text);
+    auto options = target.options;
+    return take_clock_rate(options, target.text).and_then([&](double rate) {
+      return with_clock(kind.emulate(options, target.text), rate);
+    });
   });
 }
 
@@ -133,14 +153,18 @@ template <class Kind>
 /// and `emulate_like`.
 template <class Kind>
 [[nodiscard]] Outcome<std::unique_ptr<typename Kind::Hosted>> emulate(const Kind& kind,
-                                                                      const DeviceOptions& options,
+                                                                      DeviceOptions options,
                                                                       const std::string& where) {
+  const auto rate = take_clock_rate(options, where);
+  if (!rate) return tl::unexpected{rate.error()};
   const auto like = options.find(kLike);
   if (like != options.end() && options.size() > 1) {
-    return problem(ErrorCode::kBadValue, where, "like=FILE takes the place of all other options");
+    return problem(ErrorCode::kBadValue, where,
+                   "like=FILE takes the place of all other options but clock");
   }
-  auto hosted =
-      like == options.end() ? kind.emulate(options, where) : emulate_like(kind, like->second);
+  auto hosted = with_clock(
+      like == options.end() ? kind.emulate(options, where) : emulate_like(kind, like->second),
+      *rate);
   if constexpr (std::is_same_v<Kind, OnStream>) {
     if (hosted && kind.line) return put_on_line(*std::move(hosted), rate_of(*kind.line));
   }

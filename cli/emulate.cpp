@@ -9,6 +9,7 @@
 #include "cli/device.hpp"
 #include "cli/report_files.hpp"
 #include "cli/serving.hpp"
+#include "cli/settings.hpp"
 #include "cli/terminal.hpp"
 #include "emulators/host/host.hpp"
 
@@ -91,31 +92,6 @@ Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const EmulateOptions& o
         "a bus takes --set, --bus, --json and --check, what --capture needs, and no other option");
   }
   return HostOptions{};
-}
-
-Outcome<DeviceOptions> parse_settings(const std::vector<std::string>& settings) {
-  DeviceOptions options;
-  for (const auto& setting : settings) {
-    const auto equals = setting.find('=');
-    if (equals == 0 || equals == std::string::npos) {
-      return problem(ErrorCode::kBadValue, "--set " + setting, "write NAME=VALUE");
-    }
-    auto name = setting.substr(0, equals);
-    if (options.contains(name)) {
-      return problem(ErrorCode::kBadValue, "--set " + setting, "it is said twice");
-    }
-    options[std::move(name)] = setting.substr(equals + 1);
-  }
-  return options;
-}
-
-/// As `--target` would have them.
-std::string target_of(const DeviceOptions& settings) {
-  std::string text{"emulated:"};
-  for (const auto& [name, value] : settings) {
-    text += fmt::format("{}{}={}", text.ends_with(':') ? '?' : '&', name, value);
-  }
-  return text;
 }
 
 Exit emulate(Devices devices, const EmulateOptions& options) {

@@ -35,7 +35,12 @@ constexpr auto kRecordHelp =
     "sends. With --check the program is judged as by 'armjig emulate --check'. When this process\n"
     "was late itself, it says so, and holds it against nobody. Ctrl-C ends it, with a whole file.\n"
     "\n"
-    "Exit codes: 0 recorded, 1 findings of --check, 3 the device is not there, or gone.";
+    "With --shadow emulated: an emulated device hears the same program beside it. Where what they "
+    "say\n"
+    "parts is told at once, with the fields, and when they agree again.\n"
+    "\n"
+    "Exit codes: 0 recorded, 1 findings of --check or --shadow, 3 the device is not there, or "
+    "gone.";
 
 /// The device, whether it is emulated or at the other end of a link.
 template <class Kind>
@@ -97,6 +102,8 @@ Exit record(Devices devices, const RecordOptions& options) {
   if (!files) return report(files.error());
   const auto file = open_capture_file("--out", options.capture);
   if (!file) return report(file.error());
+  auto shadow = LiveShadow::open(device, options.shadow, !target->is_emulated());
+  if (!shadow) return report(shadow.error());
   RelayStatistics statistics;
   std::optional<HostedCapture> capture;
   const auto served = std::visit(
@@ -107,14 +114,19 @@ Exit record(Devices devices, const RecordOptions& options) {
         if (!begun) return tl::unexpected{begun.error()};
         capture = *std::move(begun);
         auto hosted = capture->watch(*std::move(opened));
+        if (*shadow) hosted = (*shadow)->watch(std::move(hosted));
         if (*check) hosted = (*check)->watch(std::move(hosted));
         return serve(std::move(hosted), *serving);
       },
       device.port);
   if (!served) return report(served.error());
   if (!options.is_quiet) print_lateness(statistics);
-  const auto exit =
+  auto exit =
       *check ? conclude(**check, options.wants_json, options.colour, *files) : Exit::kPassed;
+  if (*shadow) {
+    const auto beside = (*shadow)->conclude();
+    if (exit == Exit::kPassed && beside == Exit::kFindings) exit = beside;
+  }
   if (!statistics.failure) return exit;
   (void)report(
       {statistics.failure->code, options.target, "the device has gone; what passed is kept"});
@@ -137,6 +149,7 @@ void add_record(CLI::App& app, Devices devices, Action& action) {
   command->add_flag("--json", options->wants_json,
                     "say where it listens as one line of JSON; the report of --check too");
   add_program_check(*command, options->wants_check, options->files, options->colour);
+  add_shadow_options(*command, options->shadow);
   command->callback([options, devices, &action] {
     action = [options, devices] { return record(devices, *options); };
   });

@@ -6,6 +6,7 @@
 #include "cli/capture_options.hpp"
 #include "cli/command.hpp"
 #include "cli/report_files.hpp"
+#include "cli/shadowing.hpp"
 
 namespace armjig::cli {
 
@@ -18,6 +19,7 @@ struct RecordOptions {
   bool wants_json = false;
   bool wants_check = false;
   bool is_quiet = false;  ///< says nothing but what went wrong
+  ShadowOptions shadow;
   ReportFiles files;
   std::string colour;
 };

@@ -1,51 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/reference.hpp"
 
-#include <csignal>
 #include <optional>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "cli/served.hpp"
 #include "emulators/host/host.hpp"
 #include "harness/rig/real_target.hpp"
 
 namespace armjig::cli {
 namespace {
 
-/// A hosted device, served until this is gone.
-class Served {
- public:
-  explicit Served(Host host) : host_{std::move(host)}, thread_{[this] { host_.run(); }} {}
-  Served(const Served&) = delete;
-  Served& operator=(const Served&) = delete;
-  ~Served() { host_.stop(); }
-
-  [[nodiscard]] std::string target() const { return target_; }
-
- private:
-  Host host_;
-  std::string target_ = host_.targets().front();
-  std::jthread thread_;
-};
-
 /// The bench goes first.
 struct Reference {
   std::unique_ptr<Served> served;
   std::unique_ptr<Bench> bench;
 };
-
-/// Signals are for the thread that asks whether one came.
-std::unique_ptr<Served> serve(Host host) {
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  ::pthread_sigmask(SIG_BLOCK, &all, &before);
-  auto served = std::make_unique<Served>(std::move(host));
-  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  return served;
-}
 
 template <class Kind>
 Outcome<std::unique_ptr<typename Kind::Port>> open_served(const Kind& kind, const Target& target,
@@ -64,7 +36,7 @@ Outcome<std::unique_ptr<typename Kind::Port>> open_served(const Kind& kind, cons
     return emulate(kind, target.options, target.text)
         .and_then([&](auto hosted) { return Host::open(std::move(hosted), how); })
         .and_then([&](Host host) -> Opened {
-          served = serve(std::move(host));
+          served = serve_aside(std::move(host));
           return parse_target(served->target()).and_then([&](const Target& place) {
             return open_target<typename Kind::Port>(place, line_of(kind));
           });

@@ -11,59 +11,13 @@
 
 #include "cli/device.hpp"
 #include "cli/diff.hpp"
-#include "cli/foreign_options.hpp"
+#include "cli/recorded_session.hpp"
 #include "cli/serving.hpp"
 #include "emulators/replay/device_role.hpp"
 #include "emulators/replay/host_role.hpp"
 
 namespace armjig::cli {
 namespace {
-
-/// What a host says and hears in a recording: one link, and what was beside it.
-struct Session {
-  CaptureLink link;
-  CaptureLink events;
-  std::vector<KeptRecord> records;
-  bool is_of_capture = false;
-};
-
-bool is_talk(LinkKind kind) {
-  return kind == LinkKind::kStream || kind == LinkKind::kSession || kind == LinkKind::kBus;
-}
-
-Outcome<Session> read_session(const std::string& path, const ForeignHow& how) {
-  const auto reader = open_recording(path, how);
-  if (!reader) return tl::unexpected{reader.error()};
-  std::optional<Session> session;
-  std::vector<KeptRecord> before;
-  const auto read = for_each_record(**reader, [&](const CaptureRecord& record) -> Outcome<void> {
-    const auto& link = *record.link;
-    if (is_talk(link.kind)) {
-      if (!session) {
-        session = Session{link, {link.device, link.device, LinkKind::kEvents}, {}, false};
-        session->records.swap(before);
-      } else if (link != session->link) {
-        return problem(ErrorCode::kUnsupported, path,
-                       fmt::format("it has two links, '{}' and '{}': cut one out with armjig trace "
-                                   "cut --device",
-                                   session->link.name, link.name));
-      }
-    }
-    auto& records = session ? session->records : before;
-    if (records.size() >= RecordedMessages::kMost) {
-      return problem(ErrorCode::kUnsupported, path, "it is too long; cut it with armjig trace cut");
-    }
-    records.push_back(KeptRecord::from(record));
-    return {};
-  });
-  if (!read) return tl::unexpected{read.error()};
-  print_warning_of(**reader);
-  if (session) {
-    session->is_of_capture = is_of_capture((*reader)->header().json);
-    return *std::move(session);
-  }
-  return problem(ErrorCode::kMalformed, path, "nothing passed on a link in there");
-}
 
 /// What the judge of the device refuses of a recording, as far as it was asked for and does not
 /// depend on where the device is.
@@ -175,41 +129,10 @@ RigOptions like_recorded(const Kind& kind, const std::string& path, RigOptions r
   return rig;
 }
 
-/// The device that it is of. Problems: nobody here knows it, or it was on another kind of link.
-Outcome<const Device*> device_of(Devices devices, const std::string& path, const Session& session) {
-  const auto* const device = find_recorded_device(devices, session.link.device);
-  if (device == nullptr) {
-    return problem(
-        ErrorCode::kUnknownDevice, path,
-        fmt::format("it is of '{}'; known are {}", session.link.device, names_of(devices)));
-  }
-  constexpr std::array kKinds{LinkKind::kStream, LinkKind::kSession, LinkKind::kBus};
-  if (kKinds.at(device->port.index()) != session.link.kind) {
-    return problem(ErrorCode::kUnsupported, path, "it is of another kind of link");
-  }
-  return device;
-}
-
-/// A session and whose it is.
-struct KnownSession {
-  Session session;
-  const Device* device;
-};
-
-Outcome<KnownSession> read_known_session(Devices devices, const std::string& path,
-                                         const ForeignHow& how) {
-  auto session = read_session(path, how);
-  if (!session) return tl::unexpected{session.error()};
-  return device_of(devices, path, *session).map([&](const Device* device) {
-    return KnownSession{*std::move(session), device};
-  });
-}
-
-/// Both sides as messages, and what differs.
-Outcome<ReplayedRecording> compared(Devices devices, const Session& session,
-                                    const std::vector<KeptRecord>& expected,
-                                    const std::vector<KeptRecord>& actual,
-                                    const ComparisonRules& rules) {
+/// Both sides as messages.
+Outcome<ReplayedRecording> as_messages(Devices devices, const Session& session,
+                                       const std::vector<KeptRecord>& expected,
+                                       const std::vector<KeptRecord>& actual) {
   ReplayedRecording replayed{
       RecordedMessages{dissectors_of(devices)}, RecordedMessages{dissectors_of(devices)}, {}, {}};
   for (const auto& [records, messages] :
@@ -218,7 +141,6 @@ Outcome<ReplayedRecording> compared(Devices devices, const Session& session,
       return tl::unexpected{added.error()};
     }
   }
-  replayed.found = diff(replayed.expected, replayed.actual, rules);
   return replayed;
 }
 
@@ -233,9 +155,15 @@ void warn_of_patience(const HostSaid& said) {
 
 Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& path,
                                             const ReplayHow& how) {
-  const auto known = read_known_session(devices, path, how.foreign);
-  if (!known) return tl::unexpected{known.error()};
-  const auto& [session, device] = *known;
+  return read_known_session(devices, path, how.foreign).and_then([&](const KnownSession& known) {
+    return replay_session(devices, known, path, how, Compare::kYes);
+  });
+}
+
+Outcome<ReplayedRecording> replay_session(Devices devices, const KnownSession& known,
+                                          const std::string& path, const ReplayHow& how,
+                                          Compare compare) {
+  const auto& [session, device] = known;
   PlayHow play_how{.speed = how.speed,
                    .touches_of = device->replay.touches_of,
                    .trailing = how.rules.time_tolerance};
@@ -246,9 +174,11 @@ Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& 
       },
       device->port);
   if (!played) return tl::unexpected{played.error()};
-  auto replayed = compared(devices, session, played->expected, played->actual, how.rules);
+  auto replayed = as_messages(devices, session, played->expected, played->actual);
   if (!replayed) return replayed;
   replayed->left_out = std::move(played->left_out);
+  if (compare == Compare::kNo) return replayed;
+  replayed->found = diff(replayed->expected, replayed->actual, how.rules);
   forgive_ends(session, *played, how.rules.time_tolerance, replayed->found);
   return replayed;
 }
@@ -270,8 +200,10 @@ Outcome<ReplayedRecording> play_recorded_device(Devices devices, const std::stri
     return tl::unexpected{served.error()};
   }
   warn_of_patience(*said);
-  auto replayed = compared(devices, session, said->expected, said->actual, how.rules);
-  if (replayed) replayed->left_out = said->left_out;
+  auto replayed = as_messages(devices, session, said->expected, said->actual);
+  if (!replayed) return replayed;
+  replayed->left_out = said->left_out;
+  replayed->found = diff(replayed->expected, replayed->actual, how.rules);
   return replayed;
 }
 

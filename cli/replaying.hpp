@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/recorded_session.hpp"
 #include "harness/compare/recording_diff.hpp"
 #include "harness/compare/rules.hpp"
 #include "harness/foreign/foreign.hpp"
@@ -46,6 +48,14 @@ struct ReplayedRecording {
 /// target, `kForbidden` for what the recording needs and was not granted, before the first byte.
 [[nodiscard]] Outcome<ReplayedRecording> replay_recording(Devices devices, const std::string& path,
                                                           const ReplayHow& how);
+
+enum class Compare : std::uint8_t { kNo, kYes };
+
+/// The same of one that was read already. `path` is that of the recording. `Compare::kNo`: what
+/// differs is not looked for.
+[[nodiscard]] Outcome<ReplayedRecording> replay_session(Devices devices, const KnownSession& known,
+                                                        const std::string& path,
+                                                        const ReplayHow& how, Compare compare);
 
 /// Plays the device until the recording is over or a signal comes. Problems: of the file and the
 /// place.

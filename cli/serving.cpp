@@ -163,14 +163,16 @@ Outcome<void> serve(AnyHosted hosted, const Serving& serving) {
   return {};
 }
 
+LinkNoise link_noise_of(const Device& device, double speed) {
+  // A program waits for each transaction of a bus, so no pause is seen shorter than it was.
+  if (std::holds_alternative<OnBus>(device.port)) return {};
+  return {std::chrono::duration_cast<Duration>(kSchedulingNoise * speed)};
+}
+
 Outcome<std::unique_ptr<ProgramCheck>> check_if(bool is_wanted, const Device& device,
                                                 double speed) {
   if (!is_wanted) return nullptr;
-  // A program waits for each transaction of a bus, so no pause is seen shorter than it was.
-  const auto noise = std::holds_alternative<OnBus>(device.port)
-                         ? Duration::zero()
-                         : std::chrono::duration_cast<Duration>(kSchedulingNoise * speed);
-  return make_program_check(device, {noise});
+  return make_program_check(device, link_noise_of(device, speed));
 }
 
 void add_program_check(CLI::App& command, bool& is_wanted, ReportFiles& files,

@@ -35,6 +35,9 @@ struct Serving {
 /// be done beside it. Problems: those of `Host::open` and `VirtualI2c::open`.
 [[nodiscard]] Outcome<void> serve(AnyHosted hosted, const Serving& serving);
 
+/// What scheduling adds to the times of a program. `speed` is device time over wall time.
+[[nodiscard]] LinkNoise link_noise_of(const Device& device, double speed);
+
 /// Who judges the programs; nullptr if nobody asked. `speed` is device time over wall time.
 /// Problems: those of `make_program_check`.
 [[nodiscard]] Outcome<std::unique_ptr<ProgramCheck>> check_if(bool is_wanted, const Device& device,

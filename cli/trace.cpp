@@ -9,6 +9,7 @@
 
 #include "cli/trace_files.hpp"
 #include "cli/trace_random.hpp"
+#include "cli/trace_what_if.hpp"
 #include "cli/verifying.hpp"
 #include "harness/capture/trace.hpp"
 
@@ -78,6 +79,7 @@ void add_trace(CLI::App& app, Devices devices, Action& action) {
   });
   add_trace_files(*trace, devices, action);
   add_trace_random(*trace, devices, action);
+  add_trace_what_if(*trace, devices, action);
 }
 
 }  // namespace armjig::cli

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/lab/run_program.hpp"
 
+#include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,6 +12,8 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <climits>
 #include <csignal>
 
 namespace armjig {
@@ -80,7 +85,9 @@ std::vector<std::string> changed_environment(const std::vector<std::string>& cha
   return all;
 }
 
-int spawn(std::vector<std::string> arguments, std::vector<std::string> environment) {
+/// Answers the errno, and the child. `files`: nullptr for ours.
+int spawn(std::vector<std::string> arguments, std::vector<std::string> environment,
+          const posix_spawn_file_actions_t* files, pid_t& pid) {
   const auto argv = pointers_to(arguments);
   const auto envp = pointers_to(environment);
   posix_spawnattr_t attributes;
@@ -88,12 +95,59 @@ int spawn(std::vector<std::string> arguments, std::vector<std::string> environme
   const auto signals = SignalsOfProgram::set();
   posix_spawnattr_setsigdefault(&attributes, &signals);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-  pid_t pid = 0;
-  const int error = ::posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), envp.data());
-  if (error == 0) child = pid;
-  if (const int signal = early.exchange(0); signal != 0) hand_on(signal);
+  const int error = ::posix_spawnp(&pid, argv[0], files, &attributes, argv.data(), envp.data());
   posix_spawnattr_destroy(&attributes);
   return error;
+}
+
+/// Whose signals are handed on.
+int spawn_known(const std::vector<std::string>& arguments,
+                const std::vector<std::string>& environment) {
+  pid_t pid = 0;
+  const int error = spawn(arguments, environment, nullptr, pid);
+  if (error == 0) child = pid;
+  if (const int signal = early.exchange(0); signal != 0) hand_on(signal);
+  return error;
+}
+
+int spawn_silently(const std::vector<std::string>& arguments,
+                   const std::vector<std::string>& environment, pid_t& pid) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  const int error = spawn(arguments, environment, &files, pid);
+  posix_spawn_file_actions_destroy(&files);
+  return error;
+}
+
+tl::unexpected<Problem> not_started(const std::string& program, int error) {
+  return problem(error_from_errno(error).code, program,
+                 "is it the name of a program, or the path of one?");
+}
+
+int wait_for(pid_t pid) {
+  int status = 0;
+  while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kKilledBySignal + WTERMSIG(status);
+}
+
+/// Whether it does so in that time.
+bool ends_within(pid_t pid, Duration patience) {
+  const auto file = static_cast<int>(::syscall(SYS_pidfd_open, pid, 0));
+  if (file < 0) return false;
+  pollfd ended{file, POLLIN, 0};
+  const auto end = std::chrono::steady_clock::now() + patience;
+  int ready = 0;
+  do {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+        std::max(end - std::chrono::steady_clock::now(), Duration{}));
+    ready = ::poll(&ended, 1, static_cast<int>(std::min<std::int64_t>(left.count(), INT_MAX)));
+  } while (ready < 0 && errno == EINTR);
+  ::close(file);
+  return ready > 0;
 }
 
 }  // namespace
@@ -101,15 +155,23 @@ int spawn(std::vector<std::string> arguments, std::vector<std::string> environme
 Outcome<int> run_program(const std::vector<std::string>& arguments,
                          const std::vector<std::string>& environment) {
   const SignalsOfProgram signals;
-  if (const int error = spawn(arguments, changed_environment(environment)); error != 0) {
-    return problem(error_from_errno(error).code, arguments.front(),
-                   "is it the name of a program, or the path of one?");
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int error = spawn_known(arguments, changed_environment(environment));
+  if (error != 0) return not_started(arguments.front(), error);
+  const auto code = wait_for(child);
   child = 0;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : kKilledBySignal + WTERMSIG(status);
+  return code;
+}
+
+Outcome<std::optional<int>> run_program_silently(const std::vector<std::string>& arguments,
+                                                 const std::vector<std::string>& environment,
+                                                 Duration patience) {
+  pid_t pid = 0;
+  const int error = spawn_silently(arguments, changed_environment(environment), pid);
+  if (error != 0) return not_started(arguments.front(), error);
+  const bool has_ended = ends_within(pid, patience);
+  if (!has_ended) ::kill(pid, SIGKILL);
+  const auto code = wait_for(pid);
+  return has_ended ? std::optional{code} : std::nullopt;
 }
 
 }  // namespace armjig

@@ -16,6 +16,12 @@ struct Settings {
   std::vector<Fault> sent;
 };
 
+/// So many steps on its open side.
+void stand_before_switch(Axis& axis, Steps steps) {
+  const auto is_above = axis.limit.side == LimitSwitch::Side::kAtOrBelow;
+  axis.position = is_above ? axis.limit.threshold + steps : axis.limit.threshold - steps;
+}
+
 // Later rows change what earlier ones have set.
 constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
     {{"profile", "firmware|documented",
@@ -41,6 +47,22 @@ constexpr auto kTable = std::to_array<DeviceOption<Settings>>({
      }},
     {{"pass-us", "1..1000", "length of a pass of the main loop in microseconds; 10 if not given"},
      [](Settings& to, const OptionValue& value) { return value.take(to.arm.timing.pass_period); }},
+    {{"to-switch", "0..100000,...",
+      "how many steps each joint stands before its limit switch, 1 to 6; as after a run to "
+      "standby, "
+      "joint 6 beside it, if not given"},
+     [](Settings& to, const OptionValue& value) {
+       std::size_t joint = 0;
+       return value.each([&](const OptionValue& one) -> Outcome<void> {
+         std::int32_t steps{};
+         if (auto taken = one.take(steps); !taken) return taken;
+         if (joint == kJointCount) {
+           return one.take(problem(ErrorCode::kBadValue, "", "there are six joints"));
+         }
+         stand_before_switch(to.arm.plant.axes[joint++], Steps{steps});
+         return {};
+       });
+     }},
     {{"fault", "FAULT,...",
       "defects, as `armjig conformance mutants parol6 --list` names them: KIND:FIELD changes "
       "what the board sends"},

@@ -48,5 +48,7 @@ struct KeptRecord {
 [[nodiscard]] std::string text_in(const KeptRecord& record, const char* key);
 [[nodiscard]] std::int64_t number_in(const KeptRecord& record, const char* key,
                                      std::int64_t otherwise);
+/// Of a part of a bus transaction: whether it was the last one.
+[[nodiscard]] bool has_stop(const KeptRecord& record);
 
 }  // namespace armjig

@@ -20,7 +20,7 @@ std::optional<DirectLine> line_of(Port& port) {
 }  // namespace
 
 std::optional<DirectLine> direct_line(StreamPort& port, const RigOptions& options) {
-  if (options.capture.file != nullptr || options.impairment) return std::nullopt;
+  if (options.capture.is_wanted() || options.impairment) return std::nullopt;
   if (auto* const connection = dynamic_cast<SessionStream*>(&port)) {
     return line_of<GuardedSession>(connection->session());
   }

@@ -124,7 +124,7 @@ Outcome<Rig<Port>> Rig<Port>::open(const Wiring<Port>& wiring, const RigOptions&
   auto port = open_port(wiring, options);
   if (!port) return tl::unexpected{port.error()};
   Rig rig{*std::move(port)};
-  if (options.capture.file != nullptr) {
+  if (options.capture.is_wanted()) {
     auto log = WireLog::create(
         options.capture,
         {.device = wiring.device,

@@ -53,7 +53,7 @@ Outcome<std::shared_ptr<WireLog>> WireLog::create(const CaptureFile& file,
                                                   const CaptureSubject& subject) {
   std::shared_ptr<WireLog> log{new WireLog{file, subject}};
   auto begun = log->writer_->begin(log->header_, log->text_);
-  if (begun) begun = log->file_.file->put(log->text_);
+  if (begun && log->file_.file) begun = log->file_.file->put(log->text_);
   if (!begun) return tl::unexpected{std::move(begun.error())};
   log->size_ = log->least_size_ = log->text_.size();
   return log;
@@ -81,6 +81,8 @@ bool WireLog::is_full() const noexcept {
 void WireLog::add(CaptureRecord record, std::span<const Message> messages) {
   last_ = std::max(last_, record.time);
   record.time = last_;
+  if (file_.listener) file_.listener(record);
+  if (!file_.file) return;
   text_.clear();
   // No port hands over what a format could not hold.
   if (!writer_->add(record, messages, text_)) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,10 +29,15 @@ struct CaptureFile {
     int files{};            ///< that are kept, the newest among them
   };
 
-  std::shared_ptr<OutputFile> file{};  ///< of the growing kind; none: nothing is recorded
+  std::shared_ptr<OutputFile> file{};  ///< of the growing kind; none: nothing is written
+  /// Is told each record, too; nobody is if empty.
+  std::function<void(const CaptureRecord&)> listener{};
   CaptureFormat format{};
   std::optional<Rotation> rotation{};
   bool is_redacted = false;  ///< leaves out of the header who recorded it and where
+
+  /// Whether anything has to be recorded.
+  [[nodiscard]] bool is_wanted() const { return file != nullptr || listener; }
 };
 
 /// What a recording says of itself.

@@ -68,6 +68,8 @@ constexpr Room kRooms[] = {
      "emulators/replay"},
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
     {"emulators/host", "harness/core harness/wire harness/link harness/timing emulators/memory"},
+    {"emulators/shadow",
+     "harness/core harness/wire harness/capture harness/compare emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},
     {"conformance/kinovazed/mutants.cpp", "conformance emulators/kinovazed"},
     {"conformance/morap/mutants.cpp", "conformance emulators/morap"},

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "cli/command.hpp"
+#include "cli/device.hpp"
+#include "emulators/memory/overheard.hpp"
+#include "emulators/shadow/shadow.hpp"
+
+namespace armjig::cli {
+
+/// What is to run beside the device, as written.
+struct ShadowOptions {
+  std::string target;  ///< empty: nothing
+  std::string rules;
+};
+
+/// Adds `--shadow` and `--rules`.
+void add_shadow_options(CLI::App& command, ShadowOptions& options);
+
+/// An emulated device beside another one, and what is said of it on standard error.
+class LiveShadow {
+ public:
+  /// nullptr if nobody asked. `is_real`: times of the device have the noise of links. Problems:
+  /// `kBadTarget` for one that is not emulated, those of making it, and of the rules.
+  [[nodiscard]] static Outcome<std::unique_ptr<LiveShadow>> open(const Device& device,
+                                                                 const ShadowOptions& options,
+                                                                 bool is_real);
+
+  /// The same device, overheard. `this` must outlive it.
+  template <class Hosted>
+  [[nodiscard]] std::unique_ptr<Hosted> watch(std::unique_ptr<Hosted> device) {
+    return overhear(std::move(device), *shadow_);
+  }
+  [[nodiscard]] Overhearer& overhearer() noexcept { return *shadow_; }
+
+  /// Sums up on standard error.
+  [[nodiscard]] Exit conclude();
+
+ private:
+  LiveShadow(AnyHosted twin, const Device& device, ComparisonRules rules);
+
+  std::size_t told_ = 0;  ///< since they agreed last
+  std::unique_ptr<Shadow> shadow_;
+};
+
+}  // namespace armjig::cli
