@@ -56,7 +56,7 @@ def check_server(armjig):
     assert "NAME NUMBER" in server.tell("arm.fail.status_read 1 2")
     assert "no input 'arm.foot' here that takes 1" in server.tell("arm.foot 1")
     assert "restart" in server.tell("help")
-    for _ in range(11):
+    for _ in range(18):
         server.process.stderr.readline()
     assert server.tell("arm.joystick.z -500") == "arm.joystick.z is -500"
     assert server.tell("# nobody answers this\n\n  arm.fail.status_read 1\r") == \
