@@ -115,8 +115,8 @@ struct Device {
 inline constexpr std::string_view kLike = "like";
 
 /// One more that every emulated device has, beside all others.
-inline constexpr OptionRow kClock{
-    "clock", "-10..10", "by how many percent its clock is fast; 0 if not given", {-2, 2, 0}};
+inline constexpr OptionRow kClock{"clock", "-10..10",
+                                  "by how many percent its clock is fast; 0 if not given"};
 
 /// Takes that away from the options. Its seconds in a second, 1 if nobody says anything. Problems:
 /// `kBadValue`.

@@ -28,7 +28,8 @@ constexpr int kMostOperations = 400;
 class Bench {
  public:
   explicit Bench(std::uint8_t choices)
-      : drive_{{.profile = (choices & 1) != 0 ? Profile::kDocumented : Profile::kFirmware,
+      : drive_{{.profile = (choices & 1) != 0 ? kinovazed::Profile::kDocumented
+                                              : kinovazed::Profile::kFirmware,
                 .stick_watchdog = (choices & 2) != 0 ? 0ms : 500ms}} {}
 
   void operate(Input& input) {
@@ -106,7 +107,8 @@ class Bench {
       const auto line = text.find('\n');
       require(line != std::string::npos, "whole lines leave");
       require(
-          decode_command(std::string_view{text}.substr(0, line), Profile::kDocumented).has_value(),
+          decode_command(std::string_view{text}.substr(0, line), kinovazed::Profile::kDocumented)
+              .has_value(),
           "a line is a command");
       text.erase(0, line + 1);
     }

@@ -40,6 +40,6 @@ std::int64_t number_in(const KeptRecord& record, const char* key, std::int64_t o
   return number_in(event_of(record), key, otherwise);
 }
 
-bool has_stop(const KeptRecord& record) { return member_of(record, "stop") != false; }
+bool has_stop(const KeptRecord& record) { return member_of(event_of(record), "stop") != false; }
 
 }  // namespace armjig
