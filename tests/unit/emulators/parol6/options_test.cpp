@@ -48,8 +48,9 @@ TEST(Parol6Options, SayWhatThereIs) {
   EXPECT_EQ(hint_for({{"crc", ""}}), "emulated:, crc=: write ignore, d4 or d4-or-e4");
   EXPECT_EQ(hint_for({{"estop", "1"}}), "emulated:, estop=1: write report or disable");
   EXPECT_EQ(hint_for({{"bounds", "x"}}), "emulated:, bounds=x: write none or stop");
-  EXPECT_EQ(hint_for({{"color", "red"}}),
-            "emulated:, color: parol6 has profile, crc, estop, bounds, pass-us, to-switch and fault");
+  EXPECT_EQ(
+      hint_for({{"color", "red"}}),
+      "emulated:, color: parol6 has profile, crc, estop, bounds, pass-us, to-switch and fault");
 }
 
 TEST(Parol6Options, TakeTheirDocumentedValues) {
