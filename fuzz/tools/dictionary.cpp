@@ -79,9 +79,10 @@ void print(const Words& words) {
   for (const auto& word : words) {
     if (word.empty()) continue;
     std::string escaped;
-    for (const unsigned char c : word) {
+    for (const char letter : word) {
+      const auto c = static_cast<unsigned char>(letter);
       const bool is_plain = std::isprint(c) != 0 && c != '"' && c != '\\';
-      escaped += is_plain ? std::string(1, static_cast<char>(c)) : fmt::format("\\x{:02x}", c);
+      escaped += is_plain ? std::string(1, letter) : fmt::format("\\x{:02x}", c);
     }
     fmt::print("\"{}\"\n", escaped);
   }
