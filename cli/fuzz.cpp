@@ -210,7 +210,7 @@ class Account {
   Outcome<void> written_;
 };
 
-Exit conclude(const FuzzOptions& options, Report report, const ReportOutputs& files) {
+Exit conclude(const FuzzOptions& options, const Report& report, const ReportOutputs& files) {
   const auto style = style_of(options.colour, stdout);
   fmt::print("{}", to_text(report, style));
   files.put(report);
