@@ -22,6 +22,7 @@ message = [{name = "noise", ignore = true}]
 field = [
   {name = "angle", tolerance = 0.5},
   {name = "current", ignore = true},
+  {name = "applied_voltage", ignore = true},
   {name = "programming_status", ignore = true},
 ]
 )";

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "emulators/campaign/shrink.hpp"
+#include "harness/compare/recording_diff.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -118,6 +119,8 @@ class Campaign {
   /// not, nothing can be said.
   [[nodiscard]] Outcome<void> meet() {
     constexpr int kMostParts = 50;
+    constexpr int kMostUnanswered = 3;
+    int unanswered = 0;
     for (int left = kMostParts; left > 0; --left) {
       const auto seen = see({});
       if (!seen) return tl::unexpected{seen.error()};
@@ -127,7 +130,17 @@ class Campaign {
         if (auto renewed = stage_.renew_models(); !renewed) return renewed;
         continue;
       }
-      pass_over(*seen->symptom);
+      const auto& symptom = *seen->symptom;
+      const bool is_answered =
+          std::ranges::find(symptom.parts, to_string(Change::kMissing)) == symptom.parts.end();
+      if (is_answered) {
+        pass_over(symptom);
+      } else if (++unanswered == kMostUnanswered) {
+        return problem(ErrorCode::kTimedOut, "--target",
+                       fmt::format("the model has {}; is it there, and the model, --model, at "
+                                   "the same address?",
+                                   symptom.expected));
+      }
     }
     return {};
   }

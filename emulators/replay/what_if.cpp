@@ -56,6 +56,7 @@ class Search {
   Outcome<void> try_all(std::size_t count, MakeSet make_set) {
     std::atomic<std::size_t> best = count;
     std::atomic<std::size_t> tried = 0;
+    std::atomic<bool> was_stopped = false;
     std::mutex guard;
     std::optional<Problem> failure;
     how_.for_each(count, [&](std::size_t number) {
@@ -63,7 +64,7 @@ class Search {
       const auto wanted = make_set(number);
       if (wanted.empty()) return;
       if (how_.must_stop()) {
-        answer_.is_complete = false;
+        was_stopped = true;
         return;
       }
       ++tried;
@@ -78,6 +79,7 @@ class Search {
       }
     });
     answer_.tried += tried;
+    if (was_stopped) answer_.is_complete = false;
     if (failure) return tl::unexpected{*std::move(failure)};
     return {};
   }

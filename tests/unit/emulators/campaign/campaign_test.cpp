@@ -99,5 +99,33 @@ TEST(Campaign, TellsWhatIsKnown) {
   EXPECT_EQ(state.findings.front().known, "all of it");
 }
 
+/// Somewhere where nobody is.
+class NobodyThere final : public Stage {
+ public:
+  Outcome<void> reset() override { return {}; }
+  [[nodiscard]] bool can_reset() const override { return false; }
+  Outcome<void> renew_models() override { return {}; }
+  Outcome<BothHeard> play(const Script& script) override {
+    BothHeard heard;
+    auto& model = heard.models.emplace_back();
+    for (const auto& record : script) {
+      if (record.direction == Direction::kFromDevice) model.said.push_back(record);
+    }
+    return heard;
+  }
+};
+
+TEST(Campaign, DoesNotBeginWithATargetThatAnswersNothing) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
+  auto material = cli::material_of(device, emulated(""), emulated(""), 20s).value();
+  NobodyThere stage;
+  CampaignState state;
+  const CampaignOptions options{.most_cases = 3, .judging = {device.make_dissector, {}, 20ms}};
+  const auto done = run_campaign(stage, material, options, state, {});
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::kTimedOut);
+  EXPECT_EQ(state.cases, 0U);
+}
+
 }  // namespace
 }  // namespace armjig::campaign
