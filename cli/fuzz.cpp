@@ -278,7 +278,7 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   if (is_live)
     result.started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   if (signals.has_come()) result.facts.emplace_back("interrupted", "not every case was played");
-  auto exit = conclude(run.options, std::move(result), *files);
+  auto exit = conclude(run.options, result, *files);
   if (!done && !was_stopped) {
     const auto of_problem = report(done.error());
     if (exit != Exit::kFindings) exit = of_problem;
@@ -316,7 +316,7 @@ Exit merge(const Device& device, const FuzzOptions& options) {
     return fmt::format("armjig replay {} --target TARGET", paths[name_of(finding)]);
   });
   result.facts = {{"merged", fmt::format("{} campaigns", options.merge.size())}};
-  return conclude(options, std::move(result), *files);
+  return conclude(options, result, *files);
 }
 
 Exit fuzz(Devices devices, const FuzzOptions& options) {
