@@ -193,7 +193,7 @@ class ServerBench final : public PortBench<SessionSource> {
   std::optional<Instant> mode_said_;
   Start start_ = kStopped;
   bool is_spoiled_ = false;
-  std::map<std::string, std::int64_t, std::less<>> left_;  ///< inputs to put back behind the case
+  std::map<std::string, std::int64_t, std::less<>> left_;  ///< inputs to put back after the case
   MayStop may_stop_;
   bool is_seen_stopped_ = false;  ///< since it was connected
 };

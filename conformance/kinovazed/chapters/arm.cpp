@@ -73,7 +73,7 @@ void estop_while_failing(ServerBench& server, std::initializer_list<std::string_
   for (const auto call : calls) server.touch(fmt::format("arm.fail.{}", call), 1);
   server.accept("EStop");
   server.pause(300ms + 6 * server.noise());
-  server.about(fmt::format("behind EStop while {} fails", *calls.begin()));
+  server.about(fmt::format("after EStop while {} fails", *calls.begin()));
   server.accept("QuitEStop");
 }
 

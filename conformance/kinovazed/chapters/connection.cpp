@@ -86,7 +86,7 @@ constexpr Clause kConnectionClauses[] = {
          "Of two clients that connect at once the first is served, and the second when that one "
          "leaves.",
          "server, recording connection-three"),
-    look("Both ask; the second is answered behind the first.",
+    look("Both ask; the second is answered after the first.",
          [](ServerBench& server) {
            server.leave();
            server.pause(300ms + 3 * server.noise());

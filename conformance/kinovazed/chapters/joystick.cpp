@@ -140,7 +140,7 @@ void turn_wrist(ServerBench& server, std::size_t axis, double place, int number)
   server.accept(kStop);
   hold(server);
   hold_at(server, axis, kHomePlace[axis]);
-  server.about(fmt::format("Home behind a turn by {} at {}", number, place));
+  server.about(fmt::format("Home after a turn by {} at {}", number, place));
 }
 
 /// The hand that is held is at Home, or not.

@@ -23,7 +23,7 @@ void switch_on(NodeBench& node) {
 
 void tell(NodeBench& node, std::string_view command) {
   const auto bytes = from_hex(command);
-  node.about(fmt::format("the pen behind {}", command));
+  node.about(fmt::format("the pen after {}", command));
   const auto written = node.write(kPen, *bytes);
   node.expect_true(written.is_whole(), "all of it to be acknowledged", "it was not");
   node.pause(kCommandTime);
@@ -36,7 +36,7 @@ void expect_seen(NodeBench& node, std::string_view what, std::int64_t wanted) {
 
 void expect_servo(NodeBench& node, std::int64_t degrees) { expect_seen(node, "servo", degrees); }
 
-/// A command behind each of the two places, so that one which does nothing shows.
+/// A command after each of the two places, so that one which does nothing shows.
 void expect_leads_to(NodeBench& node, std::string_view command, int degrees) {
   for (const auto* const before : {"01", "02"}) {
     tell(node, before);
@@ -62,7 +62,7 @@ constexpr Clause kPenClauses[] = {
              }),
 
     must("morap.pen.at-boot", "At power-on the pen is retracted, at 45 degrees.", "vector P1"),
-    with_pen("It is looked at, also behind a command and power.",
+    with_pen("It is looked at, also after a command and power.",
              [](NodeBench& node) {
                switch_on(node);
                expect_servo(node, kRetracted);
@@ -220,10 +220,10 @@ constexpr Clause kPenClauses[] = {
                                 expect_servo(node, degrees);
                               }
                             })),
-    variant("rhythm", with_pen("Pressed 10 ms behind a look, it waits for the next.",
+    variant("rhythm", with_pen("Pressed 10 ms after a look, it waits for the next.",
                                [](NodeBench& node) {
                                  switch_on(node);
-                                 for (const auto& [button, before, behind] :
+                                 for (const auto& [button, before, after] :
                                       {std::tuple{"deploy", kRetracted, kDeployed},
                                        std::tuple{"retract", kDeployed, kRetracted}}) {
                                    node.pause(10ms);
@@ -233,7 +233,7 @@ constexpr Clause kPenClauses[] = {
                                    expect_servo(node, before);
                                    node.pause(2ms);
                                    node.touch(button, 0);
-                                   expect_servo(node, behind);
+                                   expect_servo(node, after);
                                  }
                                })),
 };
