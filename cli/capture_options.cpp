@@ -101,7 +101,7 @@ Outcome<HostedCapture> HostedCapture::open(const CaptureFile& file, const Device
                                     .epoch_ns = epoch_ns});
   if (!log) return tl::unexpected{std::move(log.error())};
   constexpr std::array kKinds{LinkKind::kStream, LinkKind::kSession, LinkKind::kBus};
-  capture.log_ = std::make_unique<LogOfOverheard>(*std::move(log), kKinds.at(device.port.index()));
+  capture.log_ = write_overheard(*std::move(log), kKinds.at(device.port.index()));
   return capture;
 }
 

@@ -45,7 +45,7 @@ class HostedCapture {
   }
 
  private:
-  std::unique_ptr<LogOfOverheard> log_;
+  std::unique_ptr<Overhearer> log_;
 };
 
 }  // namespace armjig::cli

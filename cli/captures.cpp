@@ -257,10 +257,7 @@ Exit check(Devices devices, const CheckOptions& options) {
   const auto shard = parse_shard(options.shard);
   if (!shard) return report(shard.error());
   const auto files = find_traces(options.paths);
-  if (!files) {
-    (void)report(files.error());
-    return Exit::kUsage;
-  }
+  if (!files) return refuse(files.error());
   const auto part = part_of(*files, *shard);
   if (part.empty()) {
     (void)report({ErrorCode::kBadValue, files->empty() ? options.paths.front() : "--shard",
@@ -304,9 +301,7 @@ void add_captures(CLI::App& app, Devices devices, Action& action) {
   command->add_flag("--update", options->updates, "record what differs again");
   add_report_files(*command, options->files);
   add_colour_option(*command, options->colour);
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return check(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return check(devices, *options); });
 }
 
 }  // namespace armjig::cli

@@ -55,6 +55,12 @@ void add_wireshark(CLI::App& app, Devices devices, Action& action);
 /// Prints the problem as one line on standard error and answers the exit code that goes with it.
 [[nodiscard]] Exit report(const Problem& problem);
 
+/// Prints a problem of an input; answers what wrong input is answered with.
+[[nodiscard]] Exit refuse(const Problem& problem);
+
+/// Has a subcommand set `action` to what it does, when it is the one chosen.
+void when_chosen(CLI::App& command, Action& action, Action what);
+
 /// Adds the argument that names the device. Whatever is said is taken: `find_device` refuses it in
 /// its own words.
 void add_device_argument(CLI::App& command, std::string& device, Devices devices);

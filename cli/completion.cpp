@@ -89,13 +89,11 @@ void add_completion(CLI::App& app, Devices /*devices*/, Action& action) {
   std::vector<std::string> names;
   for (const auto& shell : kShells) names.emplace_back(shell.name);
   completion->add_option("SHELL", *wanted, "which one")->required()->check(one_of(names));
-  completion->callback([wanted, &action] {
-    action = [wanted] {
-      for (const auto& shell : kShells) {
-        if (shell.name == *wanted) fmt::print("{}", shell.script);
-      }
-      return Exit::kPassed;
-    };
+  when_chosen(*completion, action, [wanted] {
+    for (const auto& shell : kShells) {
+      if (shell.name == *wanted) fmt::print("{}", shell.script);
+    }
+    return Exit::kPassed;
   });
 }
 

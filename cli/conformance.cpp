@@ -317,8 +317,7 @@ void add_diff(CLI::App& conformance, Action& action) {
   const auto files = std::make_shared<Files>();
   command->add_option("BEFORE", files->before, "the report to compare with")->required();
   command->add_option("AFTER", files->after, "the report in question")->required();
-  command->callback(
-      [files, &action] { action = [files] { return compare(files->before, files->after); }; });
+  when_chosen(*command, action, [files] { return compare(files->before, files->after); });
 }
 
 }  // namespace

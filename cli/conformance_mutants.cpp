@@ -107,9 +107,7 @@ void add_conformance_mutants(CLI::App& conformance, Devices devices, Action& act
   command->add_flag("--list", options->list, "name the mutants and stop");
   add_report_files(*command, options->files);
   add_colour_option(*command, options->colour);
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return mutants(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return mutants(devices, *options); });
 }
 
 }  // namespace armjig::cli

@@ -284,9 +284,7 @@ void add_console(CLI::App& app, Devices devices, Action& action) {
   const auto options = std::make_shared<ConsoleOptions>();
   add_device_argument(*command, options->device, devices);
   add_target_options(*command, options->target);
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return console(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return console(devices, *options); });
 }
 
 }  // namespace armjig::cli

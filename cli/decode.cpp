@@ -140,18 +140,16 @@ Outcome<void> decode_recording(Outcome<std::unique_ptr<CaptureReader>> reader,
     messages.clear();
   };
   int unanswered = 0;
-  CaptureRecord record;
-  Outcome<bool> has_record = true;
-  while ((has_record = (*reader)->next(record)) && *has_record) {
-    if (!is_wanted(record, options)) continue;
+  auto read = (*reader)->for_each([&](const CaptureRecord& record) {
+    if (!is_wanted(record, options)) return;
     const auto* const other = find_recorded_device(devices, record.link->device);
-    if (other != nullptr && other != &device) continue;
+    if (other != nullptr && other != &device) return;
     const bool is_bus = record.link->kind == LinkKind::kBus;
     std::vector<std::byte> bus_message;
     if (is_bus) bus_message = bus_message_of(record);
     if (is_bus && bus_message.empty()) {
       ++unanswered;
-      continue;
+      return;
     }
     auto& dissector = talks[{record.link, is_bus ? 0 : record.id}];
     if (dissector && lost_before(record) > 0) dissector->finish(messages);
@@ -159,7 +157,7 @@ Outcome<void> decode_recording(Outcome<std::unique_ptr<CaptureReader>> reader,
     dissector->feed(record.direction, record.time, is_bus ? Bytes{bus_message} : record.bytes,
                     messages);
     tell();
-  }
+  });
   for (const auto& [where, dissector] : talks) dissector->finish(messages);
   tell();
   if (unanswered > 0 && !options.is_quiet) {
@@ -167,8 +165,7 @@ Outcome<void> decode_recording(Outcome<std::unique_ptr<CaptureReader>> reader,
                unanswered);
   }
   if (!options.is_quiet) print_warning_of(**reader);
-  if (!has_record) return tl::unexpected{has_record.error()};
-  return {};
+  return read;
 }
 
 /// Bytes of which nobody knows when they passed.
@@ -455,9 +452,7 @@ void add_decode(CLI::App& app, Devices devices, Action& action) {
   command->add_option("--address", options->address, "of a recording of a bus: only this one")
       ->type_name("N")
       ->transform(whole(0, kMostId));
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return decode(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return decode(devices, *options); });
 }
 
 }  // namespace armjig::cli

@@ -77,9 +77,7 @@ void add_devices(CLI::App& app, Devices known, Action& action) {
   auto* command = app.add_subcommand("devices", kDevicesHelp);
   const auto wants_json = std::make_shared<bool>(false);
   command->add_flag("--json", *wants_json, "as one JSON object");
-  command->callback([wants_json, known, &action] {
-    action = [wants_json, known] { return devices(known, *wants_json); };
-  });
+  when_chosen(*command, action, [wants_json, known] { return devices(known, *wants_json); });
 }
 
 }  // namespace armjig::cli

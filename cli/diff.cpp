@@ -228,9 +228,7 @@ void add_diff(CLI::App& app, Devices devices, Action& action) {
   command->add_option("B", options->after, "another one")->required();
   add_comparison_options(*command, options->comparison);
   add_foreign_options(*command, options->foreign);
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return compare(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return compare(devices, *options); });
 }
 
 }  // namespace armjig::cli

@@ -70,9 +70,7 @@ void add_doctor(CLI::App& app, Devices devices, Action& action) {
   const auto options = std::make_shared<DoctorOptions>();
   command->add_flag("--json", options->wants_json, "as one JSON object");
   command->add_flag("--udev-rules", options->wants_rules, "print udev rules for our boards");
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return doctor(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return doctor(devices, *options); });
 }
 
 }  // namespace armjig::cli

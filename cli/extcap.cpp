@@ -120,9 +120,7 @@ void add_extcap(CLI::App& wireshark, Devices devices, Action& action) {
       ->add_option("--listen", options->record.listen,
                    "where programs find it; pty:, the device's own TCP port, or i2c:1")
       ->type_name("PLACE");
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return extcap(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return extcap(devices, *options); });
 }
 
 std::string extcap_script(const std::string& program) {

@@ -388,9 +388,7 @@ void add_fuzz(CLI::App& app, Devices devices, Action& action) {
   command->add_flag("--fail-fast", options->stops_at_first, "end at the first finding");
   add_report_files(*command, options->files);
   add_colour_option(*command, options->colour);
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return fuzz(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return fuzz(devices, *options); });
 }
 
 }  // namespace armjig::cli

@@ -355,8 +355,7 @@ CLI::App* add_computation(CLI::App& kin, const std::string& name, const std::str
   command->add_option("--convention", options->convention, "what three angles mean")
       ->check(one_of(convention_names()));
   command->add_flag("--json", options->json, "one JSON object (docs/schemas)");
-  command->callback(
-      [options, compute, &action] { action = [options, compute] { return compute(*options); }; });
+  when_chosen(*command, action, [options, compute] { return compute(*options); });
   return command;
 }
 

@@ -127,9 +127,7 @@ void add_lab(CLI::App& app, Devices devices, Action& action) {
   for (auto* file : add_report_files(*command, options->files)) file->needs(check);
   add_colour_option(*command, options->colour);
   command->add_option("PROGRAM", options->program, "and its arguments, behind --")->type_name("");
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return exec(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return exec(devices, *options); });
 }
 
 }  // namespace armjig::cli

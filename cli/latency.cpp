@@ -625,9 +625,7 @@ void add_latency(CLI::App& app, Devices devices, Action& action) {
         "--load", "--priority", "--processor", "--sending"}) {
     from->excludes(command->get_option(other));
   }
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return latency(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return latency(devices, *options); });
 }
 
 }  // namespace armjig::cli

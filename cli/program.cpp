@@ -186,6 +186,15 @@ Exit report(const Problem& problem) {
   }
 }
 
+Exit refuse(const Problem& problem) {
+  (void)report(problem);
+  return Exit::kUsage;
+}
+
+void when_chosen(CLI::App& command, Action& action, Action what) {
+  command.callback([&action, what = std::move(what)] { action = what; });
+}
+
 void add_device_argument(CLI::App& command, std::string& device, Devices devices) {
   command.add_option("DEVICE", device, "which one: " + names_of(devices))
       ->required()

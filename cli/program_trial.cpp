@@ -15,6 +15,8 @@
 #include "emulators/lab/virtual_i2c.hpp"
 #include "emulators/memory/clocked.hpp"
 #include "emulators/memory/overheard.hpp"
+#include "emulators/replay/recorded_host.hpp"
+#include "emulators/replay/trial_witness.hpp"
 
 namespace armjig::cli {
 namespace {

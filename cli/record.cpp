@@ -150,9 +150,7 @@ void add_record(CLI::App& app, Devices devices, Action& action) {
                     "say where it listens as one line of JSON; the report of --check too");
   add_program_check(*command, options->wants_check, options->files, options->colour);
   add_shadow_options(*command, options->shadow);
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return record(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return record(devices, *options); });
 }
 
 }  // namespace armjig::cli

@@ -118,9 +118,7 @@ void add_replay(CLI::App& app, Devices devices, Action& action) {
       ->type_name("FACTOR")
       ->check(number(0.001, 1000));
   add_foreign_options(*command, options->foreign);
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return replay(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return replay(devices, *options); });
 }
 
 }  // namespace armjig::cli

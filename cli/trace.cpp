@@ -52,10 +52,7 @@ void verify_file(const std::string& path, Devices devices, Tally& tally) {
 
 Exit verify_all(const std::vector<std::string>& paths, Devices devices) {
   const auto files = find_traces(paths);
-  if (!files) {
-    (void)report(files.error());
-    return Exit::kUsage;
-  }
+  if (!files) return refuse(files.error());
   Tally tally;
   for (const auto& path : *files) verify_file(path, devices, tally);
   const auto verified = tally.identical + tally.different;
@@ -74,9 +71,7 @@ void add_trace(CLI::App& app, Devices devices, Action& action) {
   auto* verify = trace->add_subcommand("verify", kTraceHelp);
   const auto paths = std::make_shared<std::vector<std::string>>();
   verify->add_option("PATH", *paths, "files or folders")->required();
-  verify->callback([paths, devices, &action] {
-    action = [paths, devices] { return verify_all(*paths, devices); };
-  });
+  when_chosen(*verify, action, [paths, devices] { return verify_all(*paths, devices); });
   add_trace_files(*trace, devices, action);
   add_trace_random(*trace, devices, action);
   add_trace_what_if(*trace, devices, action);

@@ -65,12 +65,6 @@ constexpr auto kMergeHelp =
     "\n"
     "  armjig trace merge --out both.pcapng arm.pcapng gripper.jsonl";
 
-/// Prints a problem of an input; answers what wrong input is answered with.
-Exit refuse(const Problem& problem) {
-  (void)report(problem);
-  return Exit::kUsage;
-}
-
 /// How recordings are read that other programs wrote.
 struct Reading {
   Devices devices;
@@ -319,22 +313,22 @@ Exit info(const Reading& reading, const std::vector<std::string>& paths) {
       std::uint64_t bytes{};
     };
     std::map<std::string, Count> links;
-    CaptureRecord record;
-    Outcome<bool> has_record = true;
-    while ((has_record = (*reader)->next(record)) && *has_record) {
+    Instant last{};
+    const auto read = (*reader)->for_each([&](const CaptureRecord& record) {
       auto& count = links[fmt::format("{} ({})", record.link->name, to_string(record.link->kind))];
       ++count.records;
       count.bytes += record.bytes.size();
-    }
+      last = record.time;
+    });
     fmt::print("{}", title_of(path, **reader));
-    fmt::print("{:<12} {:.6f} s\n", "length", seconds(record.time));
+    fmt::print("{:<12} {:.6f} s\n", "length", seconds(last));
     for (const auto& [name, count] : links) {
       fmt::print("{:<12} {}: {} records, {} bytes\n", "link", wording::line(name), count.records,
                  count.bytes);
     }
     print_warning_of(**reader);
-    if (!has_record) (void)report(has_record.error());
-    are_all_read = are_all_read && has_record;
+    if (!read) (void)report(read.error());
+    are_all_read = are_all_read && read;
   }
   return are_all_read ? Exit::kPassed : Exit::kUsage;
 }
@@ -400,14 +394,12 @@ Exit show(const Reading& reading, const Showing& options) {
                            return device == nullptr ? nullptr : device->make_dissector;
                          },
                          std::move(hear)};
-  CaptureRecord record;
-  Outcome<bool> has_record = true;
   bool is_empty = true;
-  while ((has_record = (*reader)->next(record)) && *has_record) {
+  const auto read = (*reader)->for_each([&](const CaptureRecord& record) {
     summary.add(record);
     if (html && record.link->kind == LinkKind::kEvents) session.add_event(record);
     is_empty = false;
-  }
+  });
   summary.finish();
   const auto title = title_of(options.path, **reader);
   if (options.wants_json) {
@@ -417,7 +409,7 @@ Exit show(const Reading& reading, const Showing& options) {
   }
   if (html) html->put(to_html(page_of(options.path, title, summary, session)));
   print_warning_of(**reader);
-  if (!has_record) return refuse(has_record.error());
+  if (!read) return refuse(read.error());
   if (is_empty) return Exit::kNothing;
   return summary.has_findings() ? Exit::kFindings : Exit::kPassed;
 }
@@ -460,9 +452,7 @@ void add_trace_files(CLI::App& trace, Devices devices, Action& action) {
   const auto paths = std::make_shared<std::vector<std::string>>();
   info_command->add_option("FILE", *paths, "recordings; '-' for standard input")->required();
   const Reading info_reading{*info_command, devices};
-  info_command->callback([paths, info_reading, &action] {
-    action = [paths, info_reading] { return info(info_reading, *paths); };
-  });
+  when_chosen(*info_command, action, [paths, info_reading] { return info(info_reading, *paths); });
 
   auto* show_command = trace.add_subcommand("show", kShowHelp);
   const auto shown = std::make_shared<Showing>();
@@ -471,18 +461,14 @@ void add_trace_files(CLI::App& trace, Devices devices, Action& action) {
   show_command->add_option("--html", shown->html, "also write a page with a time line to this file")
       ->type_name("FILE");
   const Reading show_reading{*show_command, devices};
-  show_command->callback([shown, show_reading, &action] {
-    action = [shown, show_reading] { return show(show_reading, *shown); };
-  });
+  when_chosen(*show_command, action, [shown, show_reading] { return show(show_reading, *shown); });
 
   auto* convert_command = trace.add_subcommand("convert", kConvertHelp);
   const auto converted = add_copying(*convert_command);
   const Reading convert_reading{*convert_command, devices};
-  convert_command->callback([converted, convert_reading, &action] {
-    action = [converted, convert_reading] {
-      return copy(convert_reading, converted->in, converted->out, converted->is_redacted,
-                  [](const CaptureRecord&) { return true; });
-    };
+  when_chosen(*convert_command, action, [converted, convert_reading] {
+    return copy(convert_reading, converted->in, converted->out, converted->is_redacted,
+                [](const CaptureRecord&) { return true; });
   });
 
   auto* cut_command = trace.add_subcommand("cut", kCutHelp);
@@ -499,14 +485,12 @@ void add_trace_files(CLI::App& trace, Devices devices, Action& action) {
       ->transform(whole(0, std::numeric_limits<std::uint32_t>::max()));
   cut_command->add_option("--device", cut->device, "only this one")->type_name("DEVICE");
   const Reading cut_reading{*cut_command, devices};
-  cut_command->callback([cut, cut_reading, &action] {
-    action = [cut, cut_reading] {
-      if (cut->to < cut->from) {
-        return report({ErrorCode::kBadValue, "--to", "it is before --from"});
-      }
-      return copy(cut_reading, cut->in, cut->out, cut->is_redacted,
-                  [&cut](const CaptureRecord& record) { return cut->wants(record); });
-    };
+  when_chosen(*cut_command, action, [cut, cut_reading] {
+    if (cut->to < cut->from) {
+      return report({ErrorCode::kBadValue, "--to", "it is before --from"});
+    }
+    return copy(cut_reading, cut->in, cut->out, cut->is_redacted,
+                [&cut](const CaptureRecord& record) { return cut->wants(record); });
   });
 
   auto* merge_command = trace.add_subcommand("merge", kMergeHelp);
@@ -516,10 +500,8 @@ void add_trace_files(CLI::App& trace, Devices devices, Action& action) {
       ->type_name("FILE")
       ->required();
   const Reading merge_reading{*merge_command, devices};
-  merge_command->callback([merged, merge_reading, &action] {
-    action = [merged, merge_reading] {
-      return merge(merge_reading, merged->first, merged->second);
-    };
+  when_chosen(*merge_command, action, [merged, merge_reading] {
+    return merge(merge_reading, merged->first, merged->second);
   });
 }
 

@@ -77,9 +77,7 @@ void add_trace_random(CLI::App& trace, Devices devices, Action& action) {
   random->add_option("--count", options->count, "how many; the seeds follow each other")
       ->transform(whole(1, kMostSessions));
   random->add_option("--out", options->folder, "the folder they go to")->required();
-  random->callback([options, devices, &action] {
-    action = [options, devices] { return write_sessions(*options, devices); };
-  });
+  when_chosen(*random, action, [options, devices] { return write_sessions(*options, devices); });
 }
 
 }  // namespace armjig::cli

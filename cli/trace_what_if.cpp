@@ -20,7 +20,7 @@
 #include "cli/program_trial.hpp"
 #include "cli/recorded_session.hpp"
 #include "conformance/in_parallel.hpp"
-#include "emulators/replay/what_if.hpp"
+#include "emulators/replay/recorded_talk.hpp"
 #include "harness/report/wording.hpp"
 
 namespace armjig::cli {
@@ -270,9 +270,7 @@ void add_trace_what_if(CLI::App& trace, Devices devices, Action& action) {
       ->check(number(0.001, 1000));
   add_foreign_options(*command, options->foreign);
   command->add_option("PROGRAM", options->program, "and its arguments, behind --")->type_name("");
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return what_if_command(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return what_if_command(devices, *options); });
 }
 
 }  // namespace armjig::cli

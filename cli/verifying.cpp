@@ -85,32 +85,42 @@ Outcome<const Device*> device_of(const Trace& trace, Devices devices) {
                  fmt::format("no emulator replays '{}' here", trace.device));
 }
 
+struct KnownTrace {
+  Trace trace;
+  const Device* device{};
+};
+
+Outcome<KnownTrace> read_known(const std::string& path, Devices devices) {
+  auto trace = read_trace(path);
+  if (!trace) return tl::unexpected{trace.error()};
+  return device_of(*trace, devices).map([&](const Device* device) {
+    return KnownTrace{*std::move(trace), device};
+  });
+}
+
 }  // namespace
 
 Outcome<Verified> verify_recording(const std::string& path, Devices devices) {
   if (path.ends_with(".json")) return verify_table(path, devices);
-  const auto trace = read_trace(path);
-  if (!trace) return tl::unexpected{trace.error()};
-  const auto device = device_of(*trace, devices);
-  if (!device) return tl::unexpected{device.error()};
-  const bool is_captured = is_of_capture(trace->header);
-  const auto difference =
-      is_captured ? verify_capture(*trace, **device) : verify(*trace, (*device)->replay);
-  if (!difference) return tl::unexpected{difference.error()};
-  return Verified{
-      .is_identical = !*difference,
-      .device = trace->device,
-      .title = title_of(*trace),
-      .what = *difference ? describe(**difference, *trace, (*device)->make_dissector) : "",
-      .is_of_capture = is_captured};
+  return read_known(path, devices).and_then([](const KnownTrace& known) -> Outcome<Verified> {
+    const auto& [trace, device] = known;
+    const bool is_captured = is_of_capture(trace.header);
+    const auto difference =
+        is_captured ? verify_capture(trace, *device) : verify(trace, device->replay);
+    if (!difference) return tl::unexpected{difference.error()};
+    return Verified{
+        .is_identical = !*difference,
+        .device = trace.device,
+        .title = title_of(trace),
+        .what = *difference ? describe(**difference, trace, device->make_dissector) : "",
+        .is_of_capture = is_captured};
+  });
 }
 
 Outcome<std::string> renewed_recording(const std::string& path, Devices devices) {
-  auto trace = read_trace(path);
-  if (!trace) return tl::unexpected{trace.error()};
-  const auto device = device_of(*trace, devices);
-  if (!device) return tl::unexpected{device.error()};
-  return record(stimulus_of(*std::move(trace)), (*device)->replay);
+  return read_known(path, devices).and_then([](KnownTrace known) {
+    return record(stimulus_of(std::move(known.trace)), known.device->replay);
+  });
 }
 
 Outcome<std::string> target_of_recording(const std::string& path) {

@@ -200,9 +200,7 @@ void add_watch(CLI::App& app, Devices devices, Action& action) {
       ->excludes(count);
   command->add_flag("--reconnect", options->reconnects, "wait for a device that has gone");
   command->add_flag("--json", options->json, "a JSON object for each message (armjig.telemetry/1)");
-  command->callback([options, devices, &action] {
-    action = [options, devices] { return watch(devices, *options); };
-  });
+  when_chosen(*command, action, [options, devices] { return watch(devices, *options); });
 }
 
 }  // namespace armjig::cli

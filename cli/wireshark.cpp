@@ -119,16 +119,13 @@ void add_wireshark(CLI::App& app, Devices devices, Action& action) {
       command->add_subcommand("dissector", "prints the dissector of a device, a Lua script");
   const auto device = std::make_shared<std::string>();
   add_device_argument(*dissector, *device, devices);
-  dissector->callback([device, devices, &action] {
-    action = [device, devices] { return print_dissector(devices, *device); };
-  });
+  when_chosen(*dissector, action, [device, devices] { return print_dissector(devices, *device); });
 
   auto* installer = command->add_subcommand(
       "install", "writes the dissectors, and what captures, where they are found");
   const auto to = std::make_shared<std::string>();
   installer->add_option("--to", *to, "this folder, in place of your own ones")->type_name("DIR");
-  installer->callback(
-      [to, devices, &action] { action = [to, devices] { return install(devices, *to); }; });
+  when_chosen(*installer, action, [to, devices] { return install(devices, *to); });
   add_extcap(*command, devices, action);
 }
 

@@ -145,9 +145,7 @@ void add_to_node(CLI::App& command, const std::shared_ptr<MorapOptions>& options
                  const Device& device, Action& action, Run run) {
   add_target_options(command, options->target);
   add_node_option(command, options->node);
-  command.callback([options, run, &device, &action] {
-    action = [options, run, &device] { return run(device, *options); };
-  });
+  when_chosen(command, action, [options, run, &device] { return run(device, *options); });
 }
 
 void add_tune(CLI::App& morap, const Device& device, Action& action) {

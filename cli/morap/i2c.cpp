@@ -153,9 +153,7 @@ CLI::App* add(CLI::App& app, const Device& device, Action& action, const char* n
   auto* command = app.add_subcommand(name, help);
   add_target_options(*command, options->target);
   command->add_flag("--json", options->wants_json, "one JSON object a line");
-  command->callback([options, run, &device, &action] {
-    action = [options, run, &device] { return run(device, *options); };
-  });
+  when_chosen(*command, action, [options, run, &device] { return run(device, *options); });
   return command;
 }
 

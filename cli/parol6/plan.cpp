@@ -106,7 +106,7 @@ void add_plan(CLI::App& app, const Device& /*device*/, Action& action) {
   add_output("--html", options->html, "write a page that needs no network");
   add_output("--capture", options->capture,
              "write the bytes to the device to this file: .pcapng, or .jsonl and '-' for a text");
-  command->callback([options, &action] { action = [options] { return plan(*options); }; });
+  when_chosen(*command, action, [options] { return plan(*options); });
 }
 
 }  // namespace armjig::cli

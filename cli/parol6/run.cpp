@@ -280,9 +280,7 @@ void add_run(CLI::App& app, const Device& device, Action& action) {
                    "write position.svg and error.svg of the joints that moved to this folder")
       ->type_name("FOLDER")
       ->check(CLI::ExistingDirectory);
-  command->callback([options, &device, &action] {
-    action = [options, &device] { return run(device, *options); };
-  });
+  when_chosen(*command, action, [options, &device] { return run(device, *options); });
 }
 
 }  // namespace armjig::cli

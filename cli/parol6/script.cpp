@@ -78,14 +78,12 @@ void add_script(CLI::App& app, const Device& /*device*/, Action& action) {
   const auto check_options = std::make_shared<CheckOptions>();
   add_script_options(*check_command, check_options->script);
   add_planning_options(*check_command, check_options->planning);
-  check_command->callback(
-      [check_options, &action] { action = [check_options] { return check(*check_options); }; });
+  when_chosen(*check_command, action, [check_options] { return check(*check_options); });
 
   auto* format_command = command->add_subcommand("format", kFormatHelp);
   const auto format_options = std::make_shared<ScriptOptions>();
   add_script_options(*format_command, *format_options);
-  format_command->callback(
-      [format_options, &action] { action = [format_options] { return format(*format_options); }; });
+  when_chosen(*format_command, action, [format_options] { return format(*format_options); });
 }
 
 }  // namespace armjig::cli

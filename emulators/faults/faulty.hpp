@@ -17,7 +17,7 @@ namespace armjig {
 
 /// A device on a stream with defects in what it sends. Needs a device that sends whole messages.
 template <EmulatedStream Device>
-class Faulty : public Sending<SentBytes> {
+class Faulty : public Sending<SentBytes>, public InputsOf<Device> {
  public:
   /// `message_size`: of what the device receives.
   Faulty(Device device, std::vector<Fault> faults, std::size_t message_size)
@@ -50,11 +50,6 @@ class Faulty : public Sending<SentBytes> {
     requires requires(Device device) { device.set_input(time, input, value); }
   {
     return device_.set_input(time, input, value);
-  }
-  [[nodiscard]] static auto inputs() noexcept
-    requires requires { Device::inputs(); }
-  {
-    return Device::inputs();
   }
 
  private:

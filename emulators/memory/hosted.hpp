@@ -96,82 +96,191 @@ class HostedBus : public HostedDevice {
 using AnyHosted = std::variant<std::unique_ptr<HostedStream>, std::unique_ptr<HostedServer>,
                                std::unique_ptr<HostedBus>>;
 
-/// What all kinds of devices may have or not. `Self` is the class that is made of it.
-template <class Self, class Device, class Kind>
-class HostedAs : public Kind {
+/// Layers that make a hosted device of another thing that has such functions, or of some of them.
+/// Beneath them lies a core, derived from the kind: it has `device()`, that other thing, and
+/// `act(time, work)`, which does `work(time)` to it, by whatever time it is there, and looks at
+/// what came of that.
+namespace hosted_by {
+
+/// What all kinds of devices may have or not.
+template <class Core>
+class Common : public Core {
  public:
-  explicit HostedAs(Device device) : device_{std::move(device)} {}
+  using Core::Core;
 
-  [[nodiscard]] std::unique_ptr<Kind> clone() const final {
-    return std::make_unique<Self>(device_);
+  void advance_to(Instant time) override {
+    this->act(time, [&](Instant now) {
+      if constexpr (requires { this->device().advance_to(now); }) this->device().advance_to(now);
+    });
   }
-
-  void advance_to(Instant time) final {
-    if constexpr (requires { device_.advance_to(time); }) device_.advance_to(time);
-  }
-  [[nodiscard]] std::optional<Instant> next_event() const final {
-    if constexpr (requires { device_.next_event(); }) return device_.next_event();
+  [[nodiscard]] std::optional<Instant> next_event() const override {
+    if constexpr (requires { this->device().next_event(); }) return this->device().next_event();
     return std::nullopt;
   }
-  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) final {
-    if constexpr (requires { device_.set_input(time, name, value); }) {
-      return device_.set_input(time, name, value);
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
+    return this->act(time, [&](Instant now) {
+      if constexpr (requires { this->device().set_input(now, name, value); }) {
+        return this->device().set_input(now, name, value);
+      }
+      return false;
+    });
+  }
+  [[nodiscard]] std::optional<std::int64_t> observe(Instant time, std::string_view name) override {
+    return this->act(time, [&](Instant now) -> std::optional<std::int64_t> {
+      if constexpr (requires { this->device().observe(now, name); }) {
+        return this->device().observe(now, name);
+      }
+      return std::nullopt;
+    });
+  }
+  void overlook(Instant from, Instant to) override {
+    if constexpr (requires { this->device().overlook(from, to); }) {
+      this->device().overlook(from, to);
     }
+  }
+  [[nodiscard]] std::span<const DeviceInput> inputs() const override {
+    if constexpr (requires { this->device().inputs(); }) return this->device().inputs();
+    return {};
+  }
+  [[nodiscard]] std::vector<std::string> take_log() override {
+    if constexpr (requires { this->device().take_log(); }) return this->device().take_log();
+    return {};
+  }
+  [[nodiscard]] std::optional<int> wakes_by() const override {
+    if constexpr (requires { this->device().wakes_by(); }) return this->device().wakes_by();
+    return std::nullopt;
+  }
+  void wake(Instant time) override {
+    this->act(time, [&](Instant now) {
+      if constexpr (requires { this->device().wake(now); }) this->device().wake(now);
+    });
+  }
+  [[nodiscard]] bool is_gone() const override {
+    if constexpr (requires { this->device().is_gone(); }) return this->device().is_gone();
     return false;
   }
-  [[nodiscard]] std::optional<std::int64_t> observe(Instant time, std::string_view name) final {
-    if constexpr (requires { device_.observe(time, name); }) return device_.observe(time, name);
-    return std::nullopt;
+};
+
+/// What is sent is what `device()` has sent.
+template <class Core>
+class Sender : public Core {
+ public:
+  using Core::Core;
+
+  [[nodiscard]] auto sent() const
+      -> decltype(std::declval<const typename Core::Hosted&>().sent()) override {
+    return this->device().sent();
   }
-  [[nodiscard]] std::span<const DeviceInput> inputs() const final {
-    if constexpr (requires { device_.inputs(); }) return device_.inputs();
-    return {};
+  void clear_sent() override { this->device().clear_sent(); }
+};
+
+template <class Core>
+class Stream : public Common<Core> {
+ public:
+  using Common<Core>::Common;
+
+  void receive(Instant time, Bytes bytes) override {
+    this->act(time, [&](Instant now) { this->device().receive(now, bytes); });
   }
-  [[nodiscard]] std::vector<std::string> take_log() final {
-    if constexpr (requires { device_.take_log(); }) return device_.take_log();
-    return {};
+  [[nodiscard]] std::size_t unread() const override {
+    if constexpr (requires { this->device().unread(); }) return this->device().unread();
+    return 0;
   }
+};
+
+template <class Core>
+class Server : public Common<Core> {
+ public:
+  using Common<Core>::Common;
+
+  [[nodiscard]] bool is_listening() const override { return this->device().is_listening(); }
+  [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {
+    return this->act(time, [&](Instant now) { return this->device().connect(now); });
+  }
+  void receive(Instant time, ConnectionId id, Bytes segment) override {
+    this->act(time, [&](Instant now) { this->device().receive(now, id, segment); });
+  }
+  void half_close(Instant time, ConnectionId id) override {
+    this->act(time, [&](Instant now) { this->device().half_close(now, id); });
+  }
+  void close(Instant time, ConnectionId id) override {
+    this->act(time, [&](Instant now) { this->device().close(now, id); });
+  }
+  void reset(Instant time, ConnectionId id) override {
+    this->act(time, [&](Instant now) { this->device().reset(now, id); });
+  }
+  [[nodiscard]] std::size_t unread(ConnectionId id) const override {
+    return this->device().unread(id);
+  }
+};
+
+template <class Core>
+class Bus : public Common<Core> {
+ public:
+  using Common<Core>::Common;
+
+  BusReply start(Instant time, std::uint8_t address, bool is_read) override {
+    return this->act(time,
+                     [&](Instant now) { return this->device().start(now, address, is_read); });
+  }
+  BusReply write(Instant time, std::byte byte) override {
+    return this->act(time, [&](Instant now) { return this->device().write(now, byte); });
+  }
+  BusReply read(Instant time) override {
+    return this->act(time, [&](Instant now) { return this->device().read(now); });
+  }
+  BusReply stop(Instant time) override {
+    return this->act(time, [&](Instant now) { return this->device().stop(now); });
+  }
+  BusReply recover(Instant time) override {
+    return this->act(time, [&](Instant now) { return this->device().recover(now); });
+  }
+};
+
+/// A core that has an emulated device of any type.
+template <class Device, class KindOfPort>
+class Owner : public KindOfPort {
+ public:
+  using Hosted = KindOfPort;
+  explicit Owner(Device device) : device_{std::move(device)} {}
 
  protected:
+  [[nodiscard]] Device& device() noexcept { return device_; }
+  [[nodiscard]] const Device& device() const noexcept { return device_; }
+  template <class Work>
+  auto act(Instant time, Work work) {
+    return work(time);
+  }
+
+ private:
   Device device_;
 };
 
+/// That can be copied.
+template <class Layers>
+class Copied final : public Layers {
+ public:
+  using Layers::Layers;
+
+  [[nodiscard]] std::unique_ptr<typename Layers::Hosted> clone() const override {
+    return std::make_unique<Copied>(this->device());
+  }
+};
+
+}  // namespace hosted_by
+
 template <EmulatedStream Device>
 [[nodiscard]] std::unique_ptr<HostedStream> make_hosted(Device device) {
-  class Hosted final : public HostedAs<Hosted, Device, HostedStream> {
-   public:
-    using Hosted::HostedAs::HostedAs;
-    void receive(Instant time, Bytes bytes) override { this->device_.receive(time, bytes); }
-    [[nodiscard]] std::span<const SentBytes> sent() const override { return this->device_.sent(); }
-    void clear_sent() override { this->device_.clear_sent(); }
-  };
-  return std::make_unique<Hosted>(std::move(device));
+  using Owner = hosted_by::Owner<Device, HostedStream>;
+  return std::make_unique<hosted_by::Copied<hosted_by::Stream<hosted_by::Sender<Owner>>>>(
+      std::move(device));
 }
 
 template <EmulatedMultiServer Device>
 [[nodiscard]] std::unique_ptr<HostedServer> make_hosted(Device device) {
-  class Hosted final : public HostedAs<Hosted, Device, HostedServer> {
-   public:
-    using Hosted::HostedAs::HostedAs;
-    [[nodiscard]] bool is_listening() const override { return this->device_.is_listening(); }
-    [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {
-      return this->device_.connect(time);
-    }
-    void receive(Instant time, ConnectionId id, Bytes segment) override {
-      this->device_.receive(time, id, segment);
-    }
-    void half_close(Instant time, ConnectionId id) override { this->device_.half_close(time, id); }
-    void close(Instant time, ConnectionId id) override { this->device_.close(time, id); }
-    void reset(Instant time, ConnectionId id) override { this->device_.reset(time, id); }
-    [[nodiscard]] std::size_t unread(ConnectionId id) const override {
-      return this->device_.unread(id);
-    }
-    [[nodiscard]] std::span<const ServerEvent> sent() const override {
-      return this->device_.sent();
-    }
-    void clear_sent() override { this->device_.clear_sent(); }
-  };
-  return std::make_unique<Hosted>(std::move(device));
+  using Owner = hosted_by::Owner<Device, HostedServer>;
+  return std::make_unique<hosted_by::Copied<hosted_by::Server<hosted_by::Sender<Owner>>>>(
+      std::move(device));
 }
 
 /// A second client is refused while there is one.
@@ -182,20 +291,8 @@ template <EmulatedServer Device>
 
 template <EmulatedBus Device>
 [[nodiscard]] std::unique_ptr<HostedBus> make_hosted(Device device) {
-  class Hosted final : public HostedAs<Hosted, Device, HostedBus> {
-   public:
-    using Hosted::HostedAs::HostedAs;
-    BusReply start(Instant time, std::uint8_t address, bool is_read) override {
-      return this->device_.start(time, address, is_read);
-    }
-    BusReply write(Instant time, std::byte byte) override {
-      return this->device_.write(time, byte);
-    }
-    BusReply read(Instant time) override { return this->device_.read(time); }
-    BusReply stop(Instant time) override { return this->device_.stop(time); }
-    BusReply recover(Instant time) override { return this->device_.recover(time); }
-  };
-  return std::make_unique<Hosted>(std::move(device));
+  using Owner = hosted_by::Owner<Device, HostedBus>;
+  return std::make_unique<hosted_by::Copied<hosted_by::Bus<Owner>>>(std::move(device));
 }
 
 /// Alone on a bus of its own.

@@ -2,27 +2,22 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "emulators/memory/hosted.hpp"
 
-namespace armjig {
+/// Cores (`hosted_by`) of hosted devices around other ones.
+namespace armjig::hosted_by {
 
-/// A hosted device around another one, which does what is not about time and traffic by itself.
-template <class Hosted>
-class HostedAround : public Hosted {
+/// Has the inner one. What derives from it says what `act` does.
+template <class HostedType>
+class Around : public HostedType {
  public:
-  explicit HostedAround(std::unique_ptr<Hosted> device) : device_{std::move(device)} {}
-
-  [[nodiscard]] std::span<const DeviceInput> inputs() const override { return device_->inputs(); }
-  [[nodiscard]] std::vector<std::string> take_log() override { return device_->take_log(); }
-  [[nodiscard]] std::optional<int> wakes_by() const override { return device_->wakes_by(); }
-  [[nodiscard]] bool is_gone() const override { return device_->is_gone(); }
+  using Hosted = HostedType;
+  explicit Around(std::unique_ptr<Hosted> device) : device_{std::move(device)} {}
 
  protected:
   [[nodiscard]] Hosted& device() noexcept { return *device_; }
@@ -35,9 +30,9 @@ class HostedAround : public Hosted {
 /// The same of one that sends by itself: what it sends is kept here in the form that the outer one
 /// gives it.
 template <class Hosted>
-class SenderAround : public HostedAround<Hosted> {
+class SenderAround : public Around<Hosted> {
  public:
-  using HostedAround<Hosted>::HostedAround;
+  using Around<Hosted>::Around;
   using Sent =
       std::remove_const_t<typename decltype(std::declval<const Hosted&>().sent())::element_type>;
 
@@ -55,4 +50,17 @@ class SenderAround : public HostedAround<Hosted> {
   std::vector<Sent> sent_;
 };
 
-}  // namespace armjig
+/// Does `work()`, then `then()`, and answers what the work did.
+template <class Work, class Then>
+auto do_then(Work work, Then then) {
+  if constexpr (std::is_void_v<decltype(work())>) {
+    work();
+    then();
+  } else {
+    auto answer = work();
+    then();
+    return answer;
+  }
+}
+
+}  // namespace armjig::hosted_by

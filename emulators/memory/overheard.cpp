@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "emulators/memory/hosted_around.hpp"
+
 namespace armjig {
 namespace {
 
@@ -21,121 +23,118 @@ void tell(Overhearer& overhearer, const ServerEvent& sent) {
       {sent.time, sent.connection, is_data ? Kind::kFromServer : Kind::kDropped, sent.bytes});
 }
 
-/// A device whose traffic is told in the order of time.
+/// What the inner one sends at once when something is done to it is told.
 template <class Hosted>
-class Overheard : public Hosted {
+class Telling : public hosted_by::Around<Hosted> {
  public:
-  Overheard(std::unique_ptr<Hosted> device, Overhearer& overhearer)
-      : device_{std::move(device)}, overhearer_{overhearer} {}
-
-  void advance_to(Instant time) override {
-    do_and_tell([&] { device_->advance_to(time); });
-    overhearer_.wait_until(time);
-  }
-  [[nodiscard]] std::optional<Instant> next_event() const override { return device_->next_event(); }
-  void overlook(Instant from, Instant to) override {
-    overhearer_.overlook(from, to);
-    device_->overlook(from, to);
-  }
-  [[nodiscard]] std::span<const DeviceInput> inputs() const override { return device_->inputs(); }
-  [[nodiscard]] std::vector<std::string> take_log() override { return device_->take_log(); }
-  [[nodiscard]] std::optional<int> wakes_by() const override { return device_->wakes_by(); }
-  void wake(Instant time) override {
-    do_and_tell([&] { device_->wake(time); });
-  }
-  [[nodiscard]] bool is_gone() const override { return device_->is_gone(); }
-  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
-    bool is_taken = false;
-    do_and_tell([&] {
-      is_taken = device_->set_input(time, name, value);
-      if (is_taken) overhearer_.on_input(time, name, value);
-    });
-    return is_taken;
-  }
+  Telling(std::unique_ptr<Hosted> device, Overhearer& overhearer)
+      : hosted_by::Around<Hosted>{std::move(device)}, overhearer_{overhearer} {}
 
  protected:
-  [[nodiscard]] Hosted& device() noexcept { return *device_; }
-  [[nodiscard]] const Hosted& device() const noexcept { return *device_; }
   [[nodiscard]] Overhearer& overhearer() noexcept { return overhearer_; }
 
-  /// Does something, and tells what the device sends at once.
-  template <class Do>
-  void do_and_tell(Do do_it) {
-    do_it();
-    if constexpr (requires { device_->sent(); }) {
-      const auto sent = device_->sent();
+  template <class Work>
+  auto act(Instant time, Work work) {
+    return hosted_by::do_then([&] { return work(time); }, [this] { tell_sent(); });
+  }
+  void forget_told() noexcept { told_ = 0; }
+
+ private:
+  void tell_sent() {
+    if constexpr (requires { this->device().sent(); }) {
+      const auto sent = this->device().sent();
       for (const auto& one : sent.subspan(told_)) tell(overhearer_, one);
       told_ = sent.size();
     }
   }
 
-  void forget_told() noexcept { told_ = 0; }
-
- private:
-  std::unique_ptr<Hosted> device_;
   Overhearer& overhearer_;
   std::size_t told_ = 0;  ///< of what was sent and not cleared
 };
 
-/// One that sends by itself.
-template <class Hosted>
-class OverheardSender : public Overheard<Hosted> {
+/// A device whose traffic is told in the order of time.
+template <class Layers>
+class Overheard : public Layers {
  public:
-  using Overheard<Hosted>::Overheard;
+  using Layers::Layers;
 
-  [[nodiscard]] auto sent() const -> decltype(std::declval<const Hosted&>().sent()) override {
-    return this->device().sent();
+  void advance_to(Instant time) override {
+    Layers::advance_to(time);
+    this->overhearer().wait_until(time);
   }
+  void overlook(Instant from, Instant to) override {
+    this->overhearer().overlook(from, to);
+    Layers::overlook(from, to);
+  }
+  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
+    return this->act(time, [&](Instant now) {
+      const bool is_taken = this->device().set_input(now, name, value);
+      if (is_taken) this->overhearer().on_input(now, name, value);
+      return is_taken;
+    });
+  }
+};
+
+/// One that sends by itself.
+template <class Layers>
+class OverheardSender : public Overheard<Layers> {
+ public:
+  using Overheard<Layers>::Overheard;
+
   void clear_sent() override {
-    this->device().clear_sent();
+    Layers::clear_sent();
     this->forget_told();
   }
 };
 
-class OverheardStream final : public OverheardSender<HostedStream> {
+template <class Hosted>
+using TellingSender = hosted_by::Sender<Telling<Hosted>>;
+
+class OverheardStream final
+    : public OverheardSender<hosted_by::Stream<TellingSender<HostedStream>>> {
  public:
   using OverheardSender::OverheardSender;
 
   void receive(Instant time, Bytes bytes) override {
     overhearer().to_device(time, bytes);
-    do_and_tell([&] { device().receive(time, bytes); });
+    OverheardSender::receive(time, bytes);
   }
-  [[nodiscard]] std::size_t unread() const override { return device().unread(); }
 };
 
-class OverheardServer final : public OverheardSender<HostedServer> {
+class OverheardServer final
+    : public OverheardSender<hosted_by::Server<TellingSender<HostedServer>>> {
  public:
   using OverheardSender::OverheardSender;
 
-  [[nodiscard]] bool is_listening() const override { return device().is_listening(); }
   [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {
-    const auto id = device().connect(time);
-    if (id) pass({time, *id, Kind::kBegun, {}}, [] {});
-    return id;
+    return act(time, [this](Instant now) {
+      const auto id = device().connect(now);
+      if (id) tell_that({now, *id, Kind::kBegun, {}});
+      return id;
+    });
   }
   void receive(Instant time, ConnectionId id, Bytes segment) override {
-    pass({time, id, Kind::kToServer, segment}, [&] { device().receive(time, id, segment); });
+    tell_that({time, id, Kind::kToServer, segment});
+    OverheardSender::receive(time, id, segment);
   }
   void half_close(Instant time, ConnectionId id) override {
-    pass({time, id, Kind::kHalfClosed, {}}, [&] { device().half_close(time, id); });
+    tell_that({time, id, Kind::kHalfClosed, {}});
+    OverheardSender::half_close(time, id);
   }
   void close(Instant time, ConnectionId id) override {
-    pass({time, id, Kind::kClosed, {}}, [&] { device().close(time, id); });
+    tell_that({time, id, Kind::kClosed, {}});
+    OverheardSender::close(time, id);
   }
   void reset(Instant time, ConnectionId id) override {
-    pass({time, id, Kind::kReset, {}}, [&] { device().reset(time, id); });
+    tell_that({time, id, Kind::kReset, {}});
+    OverheardSender::reset(time, id);
   }
-  [[nodiscard]] std::size_t unread(ConnectionId id) const override { return device().unread(id); }
 
  private:
-  template <class Do>
-  void pass(const ConnectionEvent& event, Do do_it) {
-    overhearer().on_connection(event);
-    do_and_tell(do_it);
-  }
+  void tell_that(const ConnectionEvent& event) { overhearer().on_connection(event); }
 };
 
-class OverheardBus final : public Overheard<HostedBus> {
+class OverheardBus final : public Overheard<hosted_by::Bus<Telling<HostedBus>>> {
  public:
   using Overheard::Overheard;
 

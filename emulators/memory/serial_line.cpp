@@ -6,6 +6,8 @@
 #include <deque>
 #include <utility>
 
+#include "emulators/memory/hosted_around.hpp"
+
 namespace armjig {
 namespace {
 
@@ -51,78 +53,82 @@ std::optional<Instant> earlier(std::optional<Instant> a, std::optional<Instant> 
   return a && b ? std::min(*a, *b) : (a ? a : b);
 }
 
-class OnLine final : public HostedStream {
+/// The device, and the characters on their way to it and from it.
+class Line : public hosted_by::SenderAround<HostedStream> {
  public:
-  OnLine(std::unique_ptr<HostedStream> device, CharacterRate rate)
-      : device_{std::move(device)}, rate_{rate} {}
+  Line(std::unique_ptr<HostedStream> device, CharacterRate rate)
+      : SenderAround{std::move(device)}, rate_{rate} {}
 
-  void receive(Instant time, Bytes bytes) override {
-    advance_to(time);
-    to_device_.send(time, bytes, rate_);
+ protected:
+  template <class Work>
+  auto act(Instant time, Work work) {
+    carry_to(time);
+    return hosted_by::do_then([&] { return work(time); }, [this] { take_answers(); });
+  }
+  void send(Instant time, Bytes bytes) { to_device_.send(time, bytes, rate_); }
+  [[nodiscard]] std::size_t unread_on_line() const noexcept { return to_device_.size(); }
+  [[nodiscard]] std::optional<Instant> next_on_line() const {
+    return earlier(next_at_device(), from_device_.next_arrival());
+  }
+  void copy_line_of(const Line& other) {
+    to_device_ = other.to_device_;
+    from_device_ = other.from_device_;
+    reached_ = other.reached_;
+    sent_ = other.sent_;
+  }
+  [[nodiscard]] CharacterRate rate() const noexcept { return rate_; }
+
+ private:
+  [[nodiscard]] std::optional<Instant> next_at_device() const {
+    return earlier(device().next_event(), to_device_.next_arrival());
   }
   /// From one arrival or event to the next, because each answer begins its way when it is sent.
-  void advance_to(Instant time) override {
-    for (auto next = earlier(device_->next_event(), to_device_.next_arrival());
-         next && *next <= time; next = earlier(device_->next_event(), to_device_.next_arrival())) {
-      reached_ = std::max(reached_, *next);
-      device_->advance_to(reached_);
+  void carry_to(Instant time) {
+    for (auto next = next_at_device(); next && *next <= time; next = next_at_device()) {
+      lead_to(*next);
       while (to_device_.has_arrived(reached_)) {
         const auto character = to_device_.take();
-        device_->receive(reached_, {&character.value, 1});
+        device().receive(reached_, {&character.value, 1});
       }
-      take_sent();
+      take_answers();
     }
-    reached_ = std::max(reached_, time);
-    device_->advance_to(reached_);
-    take_sent();
+    lead_to(time);
+    take_answers();
     while (from_device_.has_arrived(time)) {
       const auto character = from_device_.take();
       sent_.push_back({character.arrival, {character.value}});
     }
   }
-  [[nodiscard]] std::optional<Instant> next_event() const override {
-    return earlier(device_->next_event(),
-                   earlier(to_device_.next_arrival(), from_device_.next_arrival()));
+  void lead_to(Instant time) {
+    reached_ = std::max(reached_, time);
+    device().advance_to(reached_);
   }
-  [[nodiscard]] std::span<const SentBytes> sent() const override { return sent_; }
-  void clear_sent() override { sent_.clear(); }
-  [[nodiscard]] std::size_t unread() const override {
-    return to_device_.size() + device_->unread();
-  }
-  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
-    advance_to(time);
-    const bool is_taken = device_->set_input(time, name, value);
-    take_sent();
-    return is_taken;
-  }
-  void overlook(Instant from, Instant to) override { device_->overlook(from, to); }
-  [[nodiscard]] std::span<const DeviceInput> inputs() const override { return device_->inputs(); }
-  [[nodiscard]] std::vector<std::string> take_log() override { return device_->take_log(); }
-  [[nodiscard]] std::unique_ptr<HostedStream> clone() const override {
-    auto device = device_->clone();
-    if (!device) return nullptr;
-    auto copy = std::make_unique<OnLine>(std::move(device), rate_);
-    copy->to_device_ = to_device_;
-    copy->from_device_ = from_device_;
-    copy->reached_ = reached_;
-    copy->sent_ = sent_;
-    return copy;
+  void take_answers() {
+    take_sent([this](const SentBytes& sent) { from_device_.send(sent.time, sent.bytes, rate_); });
   }
 
- private:
-  void take_sent() {
-    for (const auto& message : device_->sent()) {
-      from_device_.send(message.time, message.bytes, rate_);
-    }
-    device_->clear_sent();
-  }
-
-  std::unique_ptr<HostedStream> device_;
   CharacterRate rate_;
   Direction to_device_;
   Direction from_device_;
   Instant reached_{};
-  std::vector<SentBytes> sent_;
+};
+
+class OnLine final : public hosted_by::Stream<Line> {
+ public:
+  using Stream::Stream;
+
+  void receive(Instant time, Bytes bytes) override {
+    act(time, [&](Instant now) { send(now, bytes); });
+  }
+  [[nodiscard]] std::optional<Instant> next_event() const override { return next_on_line(); }
+  [[nodiscard]] std::size_t unread() const override { return unread_on_line() + device().unread(); }
+  [[nodiscard]] std::unique_ptr<HostedStream> clone() const override {
+    auto inner = device().clone();
+    if (!inner) return nullptr;
+    auto copy = std::make_unique<OnLine>(std::move(inner), rate());
+    copy->copy_line_of(*this);
+    return copy;
+  }
 };
 
 }  // namespace

@@ -16,11 +16,6 @@ namespace {
 
 constexpr std::byte kNothingDriven{0xFF};
 
-std::string what_of(const KeptRecord& event) {
-  auto name = text_in(event, "dir");
-  return name.empty() ? text_in(event, "op") : name;
-}
-
 bool is_by_device(const KeptRecord& record) {
   if (record.kind != LinkKind::kEvents) return record.direction == Direction::kFromDevice;
   return what_of(record) == "disconnect" && text_in(record, "text").starts_with("device-");

@@ -40,6 +40,11 @@ std::int64_t number_in(const KeptRecord& record, const char* key, std::int64_t o
   return number_in(event_of(record), key, otherwise);
 }
 
+std::string what_of(const KeptRecord& event) {
+  auto name = text_in(event, "dir");
+  return name.empty() ? text_in(event, "op") : name;
+}
+
 bool has_stop(const KeptRecord& record) { return member_of(event_of(record), "stop") != false; }
 
 }  // namespace armjig

@@ -48,6 +48,8 @@ struct KeptRecord {
 [[nodiscard]] std::string text_in(const KeptRecord& record, const char* key);
 [[nodiscard]] std::int64_t number_in(const KeptRecord& record, const char* key,
                                      std::int64_t otherwise);
+/// What an event is: `dir`, or `op` of a bus; empty if neither is said.
+[[nodiscard]] std::string what_of(const KeptRecord& event);
 /// Of a part of a bus transaction: whether it was the last one.
 [[nodiscard]] bool has_stop(const KeptRecord& record);
 

@@ -26,45 +26,40 @@ struct HeldPiece {
 /// What a stream and a server have in common. `Link` says how bytes go in, and how what was sent
 /// looks.
 template <class Hosted, class Link>
-class BehindGate : public SenderAround<Hosted> {
+class BehindGate : public hosted_by::SenderAround<Hosted> {
  public:
-  using Sent = typename SenderAround<Hosted>::Sent;
+  using Sent = typename hosted_by::SenderAround<Hosted>::Sent;
 
   BehindGate(Gate& gate, std::unique_ptr<Hosted> device)
-      : SenderAround<Hosted>{std::move(device)}, gate_{gate} {}
-
-  void advance_to(Instant time) override {
-    for (auto due = next_due(); due && *due <= time; due = next_due()) {
-      this->device().advance_to(*due);
-      take(*due);
-      release(*due);
-    }
-    this->device().advance_to(time);
-    take(time);
-  }
-  [[nodiscard]] std::optional<Instant> next_event() const override {
-    const auto next = this->device().next_event();
-    const auto due = next_due();
-    return next && due ? std::min(next, due) : (next ? next : due);
-  }
-  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
-    advance_to(time);
-    const bool is_taken = this->device().set_input(time, name, value);
-    take(time);
-    return is_taken;
-  }
-  void overlook(Instant from, Instant to) override { this->device().overlook(from, to); }
-  void wake(Instant time) override {
-    this->device().wake(time);
-    take(time);
-  }
+      : hosted_by::SenderAround<Hosted>{std::move(device)}, gate_{gate} {}
 
  protected:
+  /// What is due before that, and what the device does before that, comes first.
+  template <class Work>
+  auto act(Instant time, Work work) {
+    for (auto due = next_due(); due && *due <= time; due = next_due()) advance_inner_to(*due);
+    advance_inner_to(time);
+    return hosted_by::do_then([&] { return work(time); }, [&] { take(time); });
+  }
   void pass(Instant time, ConnectionId id, Bytes bytes) {
-    advance_to(time);
-    const auto* const what = gate_.pass(time, Direction::kToDevice, bytes);
-    ServerEvent piece{time, id, SessionEvent::Kind::kData, {bytes.begin(), bytes.end()}};
-    decide(what, Direction::kToDevice, std::move(piece));
+    act(time, [&](Instant now) {
+      const auto* const what = gate_.pass(now, Direction::kToDevice, bytes);
+      ServerEvent piece{now, id, SessionEvent::Kind::kData, {bytes.begin(), bytes.end()}};
+      decide(what, Direction::kToDevice, std::move(piece));
+    });
+  }
+  [[nodiscard]] std::optional<Instant> next_due() const {
+    std::optional<Instant> next;
+    for (const auto& held : held_) {
+      if (held.due && (!next || *held.due < *next)) next = held.due;
+    }
+    return next;
+  }
+
+ private:
+  void advance_inner_to(Instant time) {
+    this->device().advance_to(time);
+    take(time);
   }
   void take(Instant time) {
     this->take_sent([this](const Sent& sent) {
@@ -76,8 +71,6 @@ class BehindGate : public SenderAround<Hosted> {
     });
     release(time);
   }
-
- private:
   void decide(const Perturbation* what, Direction direction, ServerEvent piece) {
     if (what == nullptr || what->kind == Kind::kTwice) {
       const auto time = piece.time;
@@ -117,14 +110,6 @@ class BehindGate : public SenderAround<Hosted> {
       deliver(held.direction, std::move(held.what));
     }
   }
-  [[nodiscard]] std::optional<Instant> next_due() const {
-    std::optional<Instant> next;
-    for (const auto& held : held_) {
-      if (held.due && (!next || *held.due < *next)) next = held.due;
-    }
-    return next;
-  }
-
   Gate& gate_;
   std::vector<HeldPiece> held_;
 };
@@ -147,49 +132,31 @@ struct ServerLinkOfGate {
   }
 };
 
-class StreamBehindGate final : public BehindGate<HostedStream, StreamLinkOfGate> {
+/// What comes by itself may be something that was held.
+template <class Layers>
+class HoldingBack : public Layers {
  public:
-  using BehindGate::BehindGate;
-  void receive(Instant time, Bytes bytes) override {
-    pass(time, 0, bytes);
-    take(time);
+  using Layers::Layers;
+
+  [[nodiscard]] std::optional<Instant> next_event() const override {
+    const auto next = Layers::next_event();
+    const auto due = this->next_due();
+    return next && due ? std::min(next, due) : (next ? next : due);
   }
-  [[nodiscard]] std::size_t unread() const override { return device().unread(); }
 };
 
-class ServerBehindGate final : public BehindGate<HostedServer, ServerLinkOfGate> {
+class StreamBehindGate final
+    : public HoldingBack<hosted_by::Stream<BehindGate<HostedStream, StreamLinkOfGate>>> {
  public:
-  using BehindGate::BehindGate;
+  using HoldingBack::HoldingBack;
+  void receive(Instant time, Bytes bytes) override { pass(time, 0, bytes); }
+};
 
-  [[nodiscard]] bool is_listening() const override { return device().is_listening(); }
-  [[nodiscard]] std::optional<ConnectionId> connect(Instant time) override {
-    advance_to(time);
-    const auto id = device().connect(time);
-    take(time);
-    return id;
-  }
-  void receive(Instant time, ConnectionId id, Bytes segment) override {
-    pass(time, id, segment);
-    take(time);
-  }
-  void half_close(Instant time, ConnectionId id) override {
-    end(time, [&] { device().half_close(time, id); });
-  }
-  void close(Instant time, ConnectionId id) override {
-    end(time, [&] { device().close(time, id); });
-  }
-  void reset(Instant time, ConnectionId id) override {
-    end(time, [&] { device().reset(time, id); });
-  }
-  [[nodiscard]] std::size_t unread(ConnectionId id) const override { return device().unread(id); }
-
- private:
-  template <class End>
-  void end(Instant time, End end_it) {
-    advance_to(time);
-    end_it();
-    take(time);
-  }
+class ServerBehindGate final
+    : public HoldingBack<hosted_by::Server<BehindGate<HostedServer, ServerLinkOfGate>>> {
+ public:
+  using HoldingBack::HoldingBack;
+  void receive(Instant time, ConnectionId id, Bytes segment) override { pass(time, id, segment); }
 };
 
 /// A part of a bus transaction that the device has still to see.
@@ -200,13 +167,29 @@ struct BusPiece {
   std::size_t read{};              ///< so many bytes
 };
 
-class BusBehindGate final : public HostedAround<HostedBus> {
+/// The gate of a bus, where nothing comes by itself.
+class GateOfBus : public hosted_by::Around<HostedBus> {
  public:
-  BusBehindGate(Gate& gate, std::unique_ptr<HostedBus> device)
-      : HostedAround{std::move(device)}, gate_{gate} {}
+  GateOfBus(Gate& gate, std::unique_ptr<HostedBus> device)
+      : Around{std::move(device)}, gate_{gate} {}
+
+ protected:
+  [[nodiscard]] Gate& gate() noexcept { return gate_; }
+  template <class Work>
+  auto act(Instant time, Work work) {
+    return work(time);
+  }
+
+ private:
+  Gate& gate_;
+};
+
+class BusBehindGate final : public hosted_by::Bus<GateOfBus> {
+ public:
+  using Bus::Bus;
 
   BusReply start(Instant time, std::uint8_t address, bool is_read) override {
-    const auto* const what = gate_.pass(time, address, is_read);
+    const auto* const what = gate().pass(time, address, is_read);
     kind_ = what == nullptr ? std::nullopt : std::optional{what->kind};
     if (kind_ == Kind::kSwapped && is_read) kind_.reset();  // nobody knows yet what it reads
     current_ = {address, is_read};
@@ -239,13 +222,6 @@ class BusBehindGate final : public HostedAround<HostedBus> {
     for (const auto& piece : std::exchange(later_, {})) reply.end = pass(reply.end, piece);
     return reply;
   }
-  BusReply recover(Instant time) override { return device().recover(time); }
-  void advance_to(Instant time) override { device().advance_to(time); }
-  [[nodiscard]] std::optional<Instant> next_event() const override { return device().next_event(); }
-  [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value) override {
-    return device().set_input(time, name, value);
-  }
-  void overlook(Instant from, Instant to) override { device().overlook(from, to); }
 
  private:
   /// A byte's time on a bus of 100 kHz, in which the device sees nothing.
@@ -259,7 +235,6 @@ class BusBehindGate final : public HostedAround<HostedBus> {
     return device().stop(reply.end).end;
   }
 
-  Gate& gate_;
   std::optional<Kind> kind_;  ///< of the part that is on the bus
   BusPiece current_;
   std::vector<BusPiece> later_;

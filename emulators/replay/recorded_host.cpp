@@ -7,15 +7,6 @@
 #include "emulators/memory/clocked.hpp"
 
 namespace armjig {
-namespace {
-
-std::string name_of_line(const KeptRecord& event) {
-  auto name = text_in(event, "dir");
-  return name.empty() ? text_in(event, "op") : name;
-}
-
-}  // namespace
-
 AnyHosted clone(const AnyHosted& device) {
   return std::visit([](const auto& held) -> AnyHosted { return held->clone(); }, device);
 }
@@ -110,7 +101,7 @@ void RecordedHost::play_event(const KeptRecord& record) {
   }
   DeviceTouches touches;
   const auto input = text_in(record, "name");
-  if (name_of_line(record) == "input" && !input.empty()) {
+  if (what_of(record) == "input" && !input.empty()) {
     touches.push_back({input, number_in(record, "value", 0)});
   } else if (touches_of_ != nullptr) {
     touches = touches_of_('{' + record.details + '}');
@@ -121,7 +112,7 @@ void RecordedHost::play_event(const KeptRecord& record) {
 }
 
 bool RecordedHost::play_border(HostedServer& server, const KeptRecord& record) {
-  const auto what = name_of_line(record);
+  const auto what = what_of(record);
   const auto number = static_cast<std::uint32_t>(number_in(record, "conn", 0));
   if (what == "connect") {
     if (const auto id = server.connect(now_)) connections_[number] = *id;

@@ -5,18 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
-#include "emulators/replay/kept_record.hpp"
 #include "emulators/replay/perturbed.hpp"
-#include "emulators/replay/recorded_host.hpp"
 #include "harness/core/error.hpp"
 #include "harness/core/overhearer.hpp"
 
@@ -105,70 +100,5 @@ struct WhatIfAnswer {
 
 /// `one lost 'command' of the host at 12.400 s`, two with `and` between.
 [[nodiscard]] std::string describe(const WhatIfAnswer::Found& found);
-
-/// A recorded talk that begins again and again a little before it is perturbed, from copies of the
-/// device.
-class RecordedTalk {
- public:
-  /// `make_judge` may answer nullptr: then only the device's own bytes are judged. Problems:
-  /// `kUnsupported` for a device that cannot be copied.
-  [[nodiscard]] static Outcome<RecordedTalk> begin(RecordedHost host,
-                                                   std::vector<KeptRecord> records,
-                                                   MakeDissector make_dissector,
-                                                   MakeTrialJudge make_judge);
-
-  RecordedTalk(RecordedTalk&&) noexcept;
-  RecordedTalk& operator=(RecordedTalk&&) noexcept;
-  RecordedTalk(const RecordedTalk&) = delete;
-  RecordedTalk& operator=(const RecordedTalk&) = delete;
-  ~RecordedTalk();
-
-  /// `longest_apart`: a device that says something else for longer than that has broken `apart`.
-  /// Any number of threads may ask.
-  [[nodiscard]] TrialResult operator()(const std::vector<Perturbation>& wanted,
-                                       std::optional<Duration> longest_apart = {}) const;
-  /// What the device says then, beside what it says otherwise.
-  [[nodiscard]] std::optional<Apart> apart_after(const std::vector<Perturbation>& wanted) const;
-  /// What it says when nothing is perturbed.
-  [[nodiscard]] const TrialResult& undisturbed() const noexcept;
-  /// How many copies of the device are kept.
-  [[nodiscard]] std::size_t copies() const noexcept;
-
- private:
-  class Impl;
-  explicit RecordedTalk(std::unique_ptr<Impl> impl);
-
-  std::unique_ptr<Impl> impl_;
-};
-
-/// Tells a judge what passes, and keeps what the device says. Bytes of it that are no message, and
-/// a connection that it ends, break `device`.
-class TrialWitness final : public Overhearer {
- public:
-  /// `judge` may be nullptr. It has to outlive this.
-  TrialWitness(MakeDissector make_dissector, TrialJudge* judge);
-
-  void to_device(Instant time, Bytes bytes) override;
-  void from_device(Instant time, Bytes bytes) override;
-  void on_connection(const ConnectionEvent& event) override;
-  void on_bus(const BusPart& part) override;
-  void on_input(Instant time, std::string_view name, std::int64_t value) override;
-  void wait_until(Instant time) override;
-  void overlook(Instant from, Instant to) override;
-
-  [[nodiscard]] std::vector<SaidPiece> take_said() { return std::move(said_); }
-  [[nodiscard]] std::vector<Breakage> finish();
-  [[nodiscard]] std::size_t said() const noexcept { return said_.size(); }
-
- private:
-  void look_at(Instant time, std::uint32_t lane, Direction direction, Bytes bytes);
-
-  MakeDissector make_dissector_;
-  TrialJudge* judge_;
-  std::map<std::uint32_t, std::unique_ptr<Dissector>> dissectors_;
-  std::vector<Message> messages_;
-  std::vector<SaidPiece> said_;
-  std::vector<Breakage> broken_;
-};
 
 }  // namespace armjig

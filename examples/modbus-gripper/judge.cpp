@@ -14,8 +14,10 @@ namespace {
 
 /// Whoever carries the bytes may put silence between any two of them. So every run of bytes that is
 /// a good frame counts, wherever it begins and for whomever it is.
-class GripperJudge final : public Judge {
+class GripperJudge final : public OneStopJudge {
  public:
+  GripperJudge() { stop_by(stop_); }
+
   std::optional<Refusal> judge(Messages messages, const Permissions& permissions) override {
     auto written = written_;
     bool moves = may_be_moving_;
@@ -55,7 +57,6 @@ class GripperJudge final : public Judge {
   }
 
   [[nodiscard]] bool may_be_moving() const override { return may_be_moving_; }
-  [[nodiscard]] Messages stop() const override { return {&stop_message_, 1}; }
 
  private:
   static constexpr auto kMovingNow = static_cast<std::int64_t>(Status::kMoving);
@@ -74,7 +75,6 @@ class GripperJudge final : public Judge {
   Frame written_;  ///< the newest bytes
   std::unique_ptr<Dissector> dissector_ = make_dissector();
   Frame stop_ = write_request(kUnit, kControl, 0);
-  Bytes stop_message_{stop_};
   bool may_be_moving_ = false;
 };
 

@@ -90,6 +90,15 @@ class CaptureReader {
   [[nodiscard]] virtual std::string_view format() const noexcept = 0;
   /// The next record; false at the end. After a problem nothing more can be read.
   [[nodiscard]] virtual Outcome<bool> next(CaptureRecord& record) = 0;
+  /// Hands `use(record)` all that are left. Problems: as of `next`, after what could be read.
+  template <class Use>
+  [[nodiscard]] Outcome<void> for_each(Use use) {
+    CaptureRecord record;
+    Outcome<bool> has_record = true;
+    while ((has_record = next(record)) && *has_record) use(std::as_const(record));
+    if (!has_record) return tl::unexpected{has_record.error()};
+    return {};
+  }
   /// What is missing or was not understood, when all is read; empty: nothing.
   [[nodiscard]] virtual std::string warning() const { return {}; }
 

@@ -33,6 +33,17 @@ class Sending {
   std::vector<Sent> sent_;
 };
 
+/// The part of a device around another one that knows which inputs that has, if it says so.
+template <class Device>
+class InputsOf {
+ public:
+  [[nodiscard]] static auto inputs() noexcept
+    requires requires { Device::inputs(); }
+  {
+    return Device::inputs();
+  }
+};
+
 /// A device on a byte stream. Times that it is given never decrease. `receive` takes bytes that
 /// become readable at a time, `advance_to` does everything up to and including a time, `next_event`
 /// tells when something may be sent if nothing more comes.

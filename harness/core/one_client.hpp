@@ -16,7 +16,7 @@ namespace armjig {
 /// An `EmulatedServer` as an `EmulatedMultiServer`, which refuses a second client while it has one.
 /// A connection that the device has ended or reset makes room for the next.
 template <EmulatedServer Device>
-class OneClient : public Sending<ServerEvent> {
+class OneClient : public Sending<ServerEvent>, public InputsOf<Device> {
  public:
   explicit OneClient(Device device) : device_{std::move(device)} {}
 
@@ -59,11 +59,6 @@ class OneClient : public Sending<ServerEvent> {
     const bool is_taken = device_.set_input(time, name, value);
     take_sent();
     return is_taken;
-  }
-  [[nodiscard]] static auto inputs() noexcept
-    requires requires { Device::inputs(); }
-  {
-    return Device::inputs();
   }
   [[nodiscard]] auto take_log()
     requires requires(Device device) { device.take_log(); }

@@ -13,7 +13,6 @@ class FixedProbe final : public Probe {
       : exchange_{std::move(exchange)}, request_{std::move(request)}, answer_size_{answer_size} {}
 
   std::string_view exchange() const noexcept override { return exchange_; }
-  Hazard hazard() const noexcept override { return Hazard::kObserve; }
   Messages request() override { return {&message_, 1}; }
   std::size_t requested(Instant /*now*/, Bytes bytes) override {
     if (!std::ranges::equal(bytes, request_)) return 0;

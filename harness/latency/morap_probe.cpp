@@ -61,7 +61,6 @@ class AngleProbe final : public Probe {
   std::string_view exchange() const noexcept override {
     return "read of an angle, two transactions";
   }
-  Hazard hazard() const noexcept override { return Hazard::kObserve; }
   Messages request() override { return messages_; }
 
   /// Each transaction that was acknowledged comes by itself.
@@ -84,7 +83,6 @@ class ReadListener final : public Probe {
   std::string_view exchange() const noexcept override {
     return "choice of what to read, and the read: two transactions";
   }
-  Hazard hazard() const noexcept override { return Hazard::kObserve; }
   Messages request() override { return {}; }
 
   std::size_t requested(Instant /*now*/, Bytes bytes) override {

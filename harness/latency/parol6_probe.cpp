@@ -23,7 +23,6 @@ class IdleProbe final : public Probe {
   explicit IdleProbe(std::string_view exchange) noexcept : exchange_{exchange} {}
 
   std::string_view exchange() const noexcept override { return exchange_; }
-  Hazard hazard() const noexcept override { return Hazard::kObserve; }
   Messages request() override { return {&message_, 1}; }
 
   std::size_t receive(Instant /*now*/, Bytes bytes) override {

@@ -19,12 +19,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-timespec timespec_of(Duration duration) noexcept {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(duration);
-  return {.tv_sec = static_cast<time_t>(seconds.count()),
-          .tv_nsec = static_cast<long>((duration - seconds).count())};
-}
-
 Duration duration_of(const timespec& time) noexcept {
   return std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
 }
@@ -104,7 +98,7 @@ class FilePath final : public Path {
       if (sent > 0) {
         message = message.subspan(static_cast<std::size_t>(sent));
       } else if (sent < 0 && errno == EAGAIN) {
-        const auto can = wait(POLLOUT, port_.now() + kPatience);
+        const auto can = wait(Readiness::kWritable, port_.now() + kPatience);
         if (!can) return tl::unexpected{can.error()};
         if (!*can) return fail(ErrorCode::kTimedOut);
       } else if (sent < 0 && errno != EINTR) {
@@ -128,7 +122,7 @@ class FilePath final : public Path {
 
   Result<Arrival> receive(std::span<std::byte> into, Instant deadline) override {
     for (;;) {
-      const auto has_come = wait(POLLIN, deadline);
+      const auto has_come = wait(Readiness::kReadable, deadline);
       if (!has_come) return tl::unexpected{has_come.error()};
       if (!*has_come) return Arrival{0, port_.now()};
       Arrival arrival;
@@ -155,9 +149,8 @@ class FilePath final : public Path {
   /// When the last byte left, since 1970; all that is in the error queue is taken out.
   std::optional<Duration> stamp_of_sent() const noexcept {
     std::optional<Duration> stamp;
-    pollfd entry{.fd = line_.descriptor, .events = 0, .revents = 0};
-    const auto patience = timespec_of(kUntilStamped);
-    if (::ppoll(&entry, 1, &patience, nullptr) <= 0) return stamp;
+    const auto has_any = wait_for(line_.descriptor, {}, [] { return kUntilStamped; });
+    if (!has_any || !*has_any) return stamp;
     alignas(cmsghdr) std::array<std::byte, 256> control;
     msghdr message{};
     message.msg_control = control.data();
@@ -173,14 +166,9 @@ class FilePath final : public Path {
     return error_from_errno(error_number);
   }
 
-  Result<bool> wait(short events, Instant deadline) const noexcept {
-    pollfd entry{.fd = line_.descriptor, .events = events, .revents = 0};
-    for (;;) {
-      const auto patience = timespec_of(std::max(deadline - port_.now(), Duration{}));
-      const auto ready = ::ppoll(&entry, 1, &patience, nullptr);
-      if (ready >= 0) return ready > 0;
-      if (errno != EINTR) return fail(ErrorCode::kSystem, errno);
-    }
+  Result<bool> wait(Readiness readiness, Instant deadline) const noexcept {
+    return wait_for(line_.descriptor, readiness,
+                    [&] { return std::max(deadline - port_.now(), Duration{}); });
   }
 
   ssize_t read_socket(std::span<std::byte> into, Arrival& arrival) const noexcept {

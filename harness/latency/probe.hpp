@@ -43,7 +43,7 @@ class Probe {
   /// What is measured, as in `idle frame to telemetry`.
   [[nodiscard]] virtual std::string_view exchange() const noexcept = 0;
   /// What the user has to agree to for the request; at least that the device answers.
-  [[nodiscard]] virtual Hazard hazard() const noexcept = 0;
+  [[nodiscard]] virtual Hazard hazard() const noexcept { return Hazard::kObserve; }
 
   /// From now on another one is measured, which the device has besides the first. Problems:
   /// `kBadValue` with the names that there are.

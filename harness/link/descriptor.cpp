@@ -63,11 +63,16 @@ void Descriptor::close() noexcept {
 
 Result<bool> wait_for(const Descriptor& descriptor, Readiness readiness, const Stopwatch& clock,
                       Instant deadline) noexcept {
-  const short events = readiness == Readiness::kReadable ? POLLIN : POLLOUT;
+  return wait_for(descriptor.value(), readiness, [&] { return remaining(clock, deadline); });
+}
+
+Result<bool> wait_for(int descriptor, std::optional<Readiness> readiness,
+                      const std::function<Duration()>& left) noexcept {
+  const short events = !readiness ? 0 : (*readiness == Readiness::kReadable ? POLLIN : POLLOUT);
   while (true) {
-    pollfd entry{.fd = descriptor.value(), .events = events, .revents = 0};
+    pollfd entry{.fd = descriptor, .events = events, .revents = 0};
     // Not poll(): its milliseconds would round every deadline up.
-    const auto timeout = as_timespec(remaining(clock, deadline));
+    const auto timeout = as_timespec(left());
     const auto ready = ::ppoll(&entry, 1, &timeout, nullptr);
     if (ready >= 0) return ready > 0;
     if (errno != EINTR) return fail(ErrorCode::kSystem, errno);

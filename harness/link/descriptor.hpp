@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include "harness/core/bytes.hpp"
@@ -50,6 +52,11 @@ enum class Readiness : std::uint8_t { kReadable, kWritable };
 /// `clock`. False: the deadline came first. Signals do not end the wait. Errors: `kSystem`.
 [[nodiscard]] Result<bool> wait_for(const Descriptor& descriptor, Readiness readiness,
                                     const Stopwatch& clock, Instant deadline) noexcept;
+
+/// The same of one that somebody else owns, by any clock: `left()` is how long there is left.
+/// Without `readiness` it is ready when there is an error to tell.
+[[nodiscard]] Result<bool> wait_for(int descriptor, std::optional<Readiness> readiness,
+                                    const std::function<Duration()>& left) noexcept;
 
 /// Sends all of `bytes` on a connected socket. Requires non-blocking mode. Errors: `kTimedOut` if
 /// nothing was taken for `patience`, `kDisconnected` with the errno, `kSystem`.

@@ -12,9 +12,10 @@ namespace {
 /// A request that has begun is damaged by these and dropped.
 constexpr std::array<std::byte, kMessageSize - 1> kFlush{};
 
-class DemoJudge final : public Judge {
+class DemoJudge final : public OneStopJudge {
  public:
   DemoJudge() {
+    stop_by(stop_);
     std::ranges::copy(kFlush, stop_.begin());
     std::ranges::copy(encode(Operation::kHalt), stop_.begin() + kFlush.size());
   }
@@ -40,13 +41,11 @@ class DemoJudge final : public Judge {
 
   void observe(Bytes /*bytes*/) override {}
   [[nodiscard]] bool may_be_moving() const override { return is_running_; }
-  [[nodiscard]] Messages stop() const override { return {&stop_message_, 1}; }
 
  private:
   Splitter splitter_{kRequestStart};
   bool is_running_ = false;
   std::array<std::byte, kFlush.size() + kMessageSize> stop_{};
-  Bytes stop_message_{stop_};
 };
 
 }  // namespace

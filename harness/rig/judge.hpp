@@ -130,4 +130,17 @@ class Judge {
   [[nodiscard]] virtual Messages stop() const = 0;
 };
 
+/// The judge of a device on a byte stream or a connection, which one message stops.
+class OneStopJudge : public Judge {
+ public:
+  [[nodiscard]] Messages stop() const final { return {&stop_, 1}; }
+
+ protected:
+  /// The message, which stays where it is; what it says may change.
+  void stop_by(Bytes message) noexcept { stop_ = message; }
+
+ private:
+  Bytes stop_;
+};
+
 }  // namespace armjig

@@ -40,8 +40,10 @@ constexpr std::string_view kStop = "\r\nEStop\r\n";
 
 bool moves(Hazard hazard) noexcept { return hazard == Hazard::kMove || hazard == Hazard::kHome; }
 
-class KinovaJudge final : public Judge {
+class KinovaJudge final : public OneStopJudge {
  public:
+  KinovaJudge() { stop_by(std::as_bytes(std::span{kStop})); }
+
   /// The shipped server keeps some of a line whose client has gone, and nobody here knows how much
   /// (kinovazed.line.carry-over).
   [[nodiscard]] Bytes opening_bytes() const override {
@@ -75,7 +77,6 @@ class KinovaJudge final : public Judge {
   }
 
   [[nodiscard]] bool may_be_moving() const override { return written_.may_be_moving; }
-  [[nodiscard]] Messages stop() const override { return {&stop_message_, 1}; }
 
  private:
   /// What was written, as far as it matters.
@@ -123,7 +124,6 @@ class KinovaJudge final : public Judge {
 
   Written written_;
   LineSplitter splitter_;
-  Bytes stop_message_ = std::as_bytes(std::span{kStop});
 };
 
 }  // namespace

@@ -124,9 +124,10 @@ Verdict for_each_window(Bytes bytes, Accept accept) {
   return std::nullopt;
 }
 
-class BoardJudge final : public Judge {
+class BoardJudge final : public OneStopJudge {
  public:
   BoardJudge() {
+    stop_by(stop_);
     recent_.reserve(4096);
     std::fill_n(stop_.begin(), kFlushSize, kFlush);
     renew_stop();
@@ -191,8 +192,6 @@ class BoardJudge final : public Judge {
   [[nodiscard]] bool may_be_moving() const override {
     return shipped_.may_be_moving() || strict_.may_be_moving();
   }
-
-  [[nodiscard]] Messages stop() const override { return {&stop_message_, 1}; }
 
  private:
   /// Outputs and gripper stay as they are: a load must not fall because the arm stops.
@@ -350,7 +349,6 @@ class BoardJudge final : public Judge {
   std::optional<std::string> stop_reason_;
   Refusal::Matter matter_of_stop_{};
   std::array<std::byte, kFlushSize + kCommandFrameSize> stop_{};
-  Bytes stop_message_{stop_};
 };
 
 }  // namespace

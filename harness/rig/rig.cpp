@@ -53,21 +53,7 @@ Outcome<std::unique_ptr<StreamPort>> open_port(const Wiring<StreamPort>& wiring,
 }
 
 template <class Port>
-struct Layers;
-template <>
-struct Layers<StreamPort> {
-  using Logged = LoggedStream;
-  using Guarded = GuardedStream;
-};
-template <>
-struct Layers<SessionSource> {
-  using Logged = LoggedSource;
-};
-template <>
-struct Layers<BusPort> {
-  using Logged = LoggedBus;
-  using Guarded = GuardedBus;
-};
+using GuardedPort = std::conditional_t<std::is_same_v<Port, StreamPort>, GuardedStream, GuardedBus>;
 
 template <class Port>
 Result<std::unique_ptr<Port>> guard_port(const Wiring<Port>& wiring, std::unique_ptr<Port> port,
@@ -77,8 +63,8 @@ Result<std::unique_ptr<Port>> guard_port(const Wiring<Port>& wiring, std::unique
     return std::make_unique<GuardedSource>(std::move(port), wiring.make_judge, options.permissions,
                                            watch, options.when_left);
   } else {
-    return Layers<Port>::Guarded::guard(std::move(port), wiring.make_judge(), options.permissions,
-                                        watch);
+    return GuardedPort<Port>::guard(std::move(port), wiring.make_judge(), options.permissions,
+                                    watch);
   }
 }
 
@@ -132,8 +118,7 @@ Outcome<Rig<Port>> Rig<Port>::open(const Wiring<Port>& wiring, const RigOptions&
          .target = options.target.text,
          .epoch_ns = options.target.is_emulated() ? 0 : epoch_of(rig.port_->now())});
     if (!log) return tl::unexpected{log.error()};
-    using Logged = typename Layers<Port>::Logged;
-    rig.port_ = std::make_unique<Logged>(std::move(rig.port_), *std::move(log));
+    rig.port_ = put_log_on(std::move(rig.port_), *std::move(log));
   }
   if (!options.target.is_emulated()) {
     rig.watch_ = std::make_shared<GuardState>();

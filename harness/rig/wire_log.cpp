@@ -160,52 +160,69 @@ void WireLog::Talk::add(const BusPart& part, const Keys& more) {
       acknowledged(part));
 }
 
-LogOfOverheard::LogOfOverheard(std::shared_ptr<WireLog> log, LinkKind kind)
-    : log_{log}, kind_{kind}, talk_{std::move(log), kind} {}
+namespace {
 
-void LogOfOverheard::to_device(Instant time, Bytes bytes) {
-  talk_.add(time, Direction::kToDevice, bytes);
-}
+class LogOfOverheard final : public Overhearer {
+ public:
+  LogOfOverheard(std::shared_ptr<WireLog> log, LinkKind kind)
+      : log_{log}, kind_{kind}, talk_{std::move(log), kind} {}
 
-void LogOfOverheard::from_device(Instant time, Bytes bytes) {
-  talk_.add(time, Direction::kFromDevice, bytes);
-}
-
-void LogOfOverheard::on_connection(const ConnectionEvent& event) {
-  const auto id = event.connection;
-  const auto end = [&](std::string_view how) {
-    log_->add_border(event.time, id, "disconnect", how);
-    connections_.erase(id);
-  };
-  const auto talk = connections_.try_emplace(id, log_, LinkKind::kSession, id).first;
-  switch (event.kind) {
-    case ConnectionEvent::Kind::kBegun:
-      return log_->add_border(event.time, id, "connect", "ok");
-    case ConnectionEvent::Kind::kToServer:
-      return talk->second.add(event.time, Direction::kToDevice, event.bytes);
-    case ConnectionEvent::Kind::kFromServer:
-      return talk->second.add(event.time, Direction::kFromDevice, event.bytes);
-    case ConnectionEvent::Kind::kHalfClosed:
-      return log_->add_border(event.time, id, "disconnect", "client-half-close");
-    case ConnectionEvent::Kind::kClosed:
-      return end("client-close");
-    case ConnectionEvent::Kind::kReset:
-      return end("client-reset");
-    case ConnectionEvent::Kind::kDropped:
-      return end("device-eof");
+  void to_device(Instant time, Bytes bytes) override {
+    talk_.add(time, Direction::kToDevice, bytes);
   }
-}
 
-void LogOfOverheard::on_bus(const BusPart& part) { talk_.add(part); }
+  void from_device(Instant time, Bytes bytes) override {
+    talk_.add(time, Direction::kFromDevice, bytes);
+  }
 
-void LogOfOverheard::on_input(Instant time, std::string_view name, std::int64_t value) {
-  log_->add_input(time, kind_key(kind_), name, value);
-}
+  void on_connection(const ConnectionEvent& event) override {
+    const auto id = event.connection;
+    const auto end = [&](std::string_view how) {
+      log_->add_border(event.time, id, "disconnect", how);
+      connections_.erase(id);
+    };
+    const auto talk = connections_.try_emplace(id, log_, LinkKind::kSession, id).first;
+    switch (event.kind) {
+      case ConnectionEvent::Kind::kBegun:
+        return log_->add_border(event.time, id, "connect", "ok");
+      case ConnectionEvent::Kind::kToServer:
+        return talk->second.add(event.time, Direction::kToDevice, event.bytes);
+      case ConnectionEvent::Kind::kFromServer:
+        return talk->second.add(event.time, Direction::kFromDevice, event.bytes);
+      case ConnectionEvent::Kind::kHalfClosed:
+        return log_->add_border(event.time, id, "disconnect", "client-half-close");
+      case ConnectionEvent::Kind::kClosed:
+        return end("client-close");
+      case ConnectionEvent::Kind::kReset:
+        return end("client-reset");
+      case ConnectionEvent::Kind::kDropped:
+        return end("device-eof");
+    }
+  }
 
-void LogOfOverheard::overlook(Instant from, Instant to) {
-  log_->add_event(to, {{kind_key(kind_), "overlooked"},
-                       {"since_us", microseconds(from)},
-                       {"text", "armjig was late itself"}});
+  void on_bus(const BusPart& part) override { talk_.add(part); }
+
+  void on_input(Instant time, std::string_view name, std::int64_t value) override {
+    log_->add_input(time, kind_key(kind_), name, value);
+  }
+
+  void overlook(Instant from, Instant to) override {
+    log_->add_event(to, {{kind_key(kind_), "overlooked"},
+                         {"since_us", microseconds(from)},
+                         {"text", "armjig was late itself"}});
+  }
+
+ private:
+  std::shared_ptr<WireLog> log_;
+  LinkKind kind_;
+  WireLog::Talk talk_;  ///< unless it is a server
+  std::map<std::uint32_t, WireLog::Talk> connections_;
+};
+
+}  // namespace
+
+std::unique_ptr<Overhearer> write_overheard(std::shared_ptr<WireLog> log, LinkKind kind) {
+  return std::make_unique<LogOfOverheard>(std::move(log), kind);
 }
 
 }  // namespace armjig

@@ -121,23 +121,8 @@ class WireLog {
   std::uint32_t connections_ = 0;
 };
 
-/// Writes down what it overhears.
-class LogOfOverheard final : public Overhearer {
- public:
-  LogOfOverheard(std::shared_ptr<WireLog> log, LinkKind kind);
-
-  void to_device(Instant time, Bytes bytes) override;
-  void from_device(Instant time, Bytes bytes) override;
-  void on_connection(const ConnectionEvent& event) override;
-  void on_bus(const BusPart& part) override;
-  void on_input(Instant time, std::string_view name, std::int64_t value) override;
-  void overlook(Instant from, Instant to) override;
-
- private:
-  std::shared_ptr<WireLog> log_;
-  LinkKind kind_;
-  WireLog::Talk talk_;  ///< unless it is a server
-  std::map<std::uint32_t, WireLog::Talk> connections_;
-};
+/// Writes down what it overhears on that kind of link.
+[[nodiscard]] std::unique_ptr<Overhearer> write_overheard(std::shared_ptr<WireLog> log,
+                                                          LinkKind kind);
 
 }  // namespace armjig

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/kinovazed/chapters.hpp"
-
 #include "conformance/kinovazed/cases.hpp"
 
 namespace armjig::kinovazed::conformance {
@@ -34,15 +32,20 @@ Duration time_of_initializing(ServerBench& server) {
   return server.perform("Initialize", Event::kInitialized).time - said;
 }
 
-/// Ended early on its way to the ready pose, an arm is not there later, so that Initialize takes
-/// time.
-void expect_not_ready(ServerBench& server, std::string_view command) {
+/// How long Initialize takes after an EStop early on the way.
+Duration time_after_early_stop(ServerBench& server, std::string_view command) {
   server.accept(command);
   server.pause(600ms);
   switch_off(server);
   server.pause(kLater);
   server.about("Initialize behind EStop early on the way");
-  expect_time(server, time_of_initializing(server), 700ms, ServerBench::kMotionTime);
+  return time_of_initializing(server);
+}
+
+/// Ended early on its way to the ready pose, an arm is not there later, so that Initialize takes
+/// time.
+void expect_not_ready(ServerBench& server, std::string_view command) {
+  expect_time(server, time_after_early_stop(server, command), 700ms, ServerBench::kMotionTime);
 }
 
 constexpr Clause kInterruptClauses[] = {
@@ -166,12 +169,7 @@ constexpr Clause kInterruptClauses[] = {
                              [](ServerBench& server) {
                                server.perform("Retract", Event::kRetracted);
                                const auto whole = time_of_initializing(server);
-                               server.accept("Retract");
-                               server.pause(600ms);
-                               switch_off(server);
-                               server.pause(kLater);
-                               server.about("Initialize behind EStop early on the way");
-                               expect_time(server, time_of_initializing(server), 0ms,
+                               expect_time(server, time_after_early_stop(server, "Retract"), 0ms,
                                            whole * 3 / 4 + server.noise());
                              })),
     variant("unfolding", in(kUnfolding, "Early on the way to the ready pose: it is not there.",

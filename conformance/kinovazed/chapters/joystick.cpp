@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/kinovazed/chapters.hpp"
-
 #include "conformance/kinovazed/cases.hpp"
 #include "conformance/kinovazed/fixture.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/kinovazed/chapters.hpp"
-
 #include "conformance/kinovazed/cases.hpp"
 
 namespace armjig::kinovazed::conformance {
@@ -58,6 +56,11 @@ constexpr std::array kNotInSteering{"Initialize"sv, "Unfold"sv, "Retract"sv, "Un
 constexpr auto kNotInRunning = all_but("SetJoystickMode:Rotation"sv, "RunObjective:Home"sv);
 
 constexpr auto kNotInFrozen = all_but("Freeze"sv, "Unfreeze"sv);
+
+void quit_estop(ServerBench& server) {
+  server.accept("QuitEStop");
+  server.expect_beat(1);
+}
 
 template <State state, const auto& commands>
 void refused(ServerBench& server) {
@@ -142,11 +145,7 @@ constexpr Clause kStateClauses[] = {
 
     must("kinovazed.state.stopped.quit-estop", "In emergencyStopped QuitEStop leads to poweredOff.",
          "server, state-command-matrix"),
-    from(kStopped, Hazard::kState, "Accepted, and beat 1.",
-         [](ServerBench& server) {
-           server.accept("QuitEStop");
-           server.expect_beat(1);
-         }),
+    from(kStopped, Hazard::kState, "Accepted, and beat 1.", on<quit_estop>),
 
     must("kinovazed.state.stopped.refused",
          "In emergencyStopped all commands but EStop and QuitEStop are Rejected and change "
@@ -161,11 +160,7 @@ constexpr Clause kStateClauses[] = {
 
     must("kinovazed.state.off.quit-estop", "In poweredOff QuitEStop stays there.",
          "server, state-command-matrix"),
-    in(kPoweredOff, "Accepted, and beat 1.",
-       [](ServerBench& server) {
-         server.accept("QuitEStop");
-         server.expect_beat(1);
-       }),
+    in(kPoweredOff, "Accepted, and beat 1.", on<quit_estop>),
 
     must("kinovazed.state.off.initialize",
          "In poweredOff Initialize leads by way of initializing to idle.",

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/morap/chapters.hpp"
-
 #include "conformance/morap/cases.hpp"
 
 namespace armjig::morap::conformance {
@@ -32,6 +30,11 @@ void expect_step_at_tick(NodeBench& node, int before, int behind, std::uint16_t 
   node.about("right behind the tick");
   node.expect_read_levels(behind);
   node.about({});
+}
+
+void expect_voltage_at_tick(NodeBench& node) {
+  node.send(kVoltage, 1.5F);
+  expect_step_at_tick(node, 0, 32);
 }
 
 constexpr int kMostLevels = 427;  // 20.015625 V
@@ -139,8 +142,7 @@ constexpr Clause kOutputClauses[] = {
     fresh("1.5 V between ticks.",
           [](NodeBench& node) {
             calibrate(node);
-            node.send(kVoltage, 1.5F);
-            expect_step_at_tick(node, 0, 32);
+            expect_voltage_at_tick(node);
           }),
 
     must("morap.voltage.disabled-at-tick",
@@ -308,8 +310,7 @@ constexpr Clause kOutputClauses[] = {
           [](NodeBench& node) {
             calibrate(node);
             node.ticks(40);
-            node.send(kVoltage, 1.5F);
-            expect_step_at_tick(node, 0, 32);
+            expect_voltage_at_tick(node);
           }),
 
     must("morap.tick.loop-rate", "With a feedback loop ticks come at the rate of its controller.",
@@ -331,8 +332,7 @@ constexpr Clause kOutputClauses[] = {
             node.tick(50);
             node.tick();
             node.send(kCalibrateZero);
-            node.send(kVoltage, 1.5F);
-            expect_step_at_tick(node, 0, 32);
+            expect_voltage_at_tick(node);
           }),
 
     must("morap.tick.back-to-idle", "Behind a feedback loop the idle rate comes back.",
@@ -347,8 +347,7 @@ constexpr Clause kOutputClauses[] = {
             node.send(kVoltage, 0.0F);
             node.tick(200);
             node.ticks(20);
-            node.send(kVoltage, 1.5F);
-            expect_step_at_tick(node, 0, 32);
+            expect_voltage_at_tick(node);
           }),
 };
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/morap/chapters.hpp"
-
 #include "conformance/morap/cases.hpp"
 
 namespace armjig::morap::conformance {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/parol6/chapters.hpp"
-
 #include "conformance/parol6/cases.hpp"
 
 namespace armjig::parol6::conformance {

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/parol6/chapters.hpp"
-
 #include "conformance/parol6/cases.hpp"
 
 namespace armjig::parol6::conformance {
 namespace {
 
 HomingRecord record(BoardBench& board) { return HomingRecord{board.homing_log()}; }
+
+/// While these were homed, these joints stood where they stood at first.
+void expect_unmoved(BoardBench& board, const HomingRecord& run, std::uint8_t homed,
+                    std::initializer_list<std::size_t> joints, std::string_view when) {
+  for (const auto& answer : run.with_bits(homed)) {
+    for (const auto joint : joints) {
+      board.about(std::string{when});
+      board.expect_same(answer, position_field(joint), run.first());
+    }
+  }
+}
 
 std::int32_t position(const Answer& answer, std::size_t joint) {
   return answer.position[joint].value;
@@ -126,14 +135,8 @@ constexpr Clause kHomeRunClauses[] = {
     from(kHomed, Hazard::kObserve, "No joint moved before its block's turn.",
          [](BoardBench& board) {
            const auto run = record(board);
-           for (const auto& answer : run.with_bits(kNoneHomed)) {
-             board.about("before J1 to J3 are homed");
-             board.expect_same(answer, "position.j4", run.first());
-           }
-           for (const auto& answer : run.with_bits(kFirstThreeHomed)) {
-             board.about("before J4 is homed");
-             board.expect_same(answer, "position.j6", run.first());
-           }
+           expect_unmoved(board, run, kNoneHomed, {kJ4}, "before J1 to J3 are homed");
+           expect_unmoved(board, run, kFirstThreeHomed, {kJ6}, "before J4 is homed");
            for (const auto& answer : run.with_speed(kFirstFourHomed, kJ6, kHoming[kJ6].seek)) {
              board.about("while J6 seeks");
              board.expect_same(answer, "position.j5", run.first());
@@ -243,18 +246,8 @@ constexpr Clause kHomeRunClauses[] = {
     from(kHomed, Hazard::kObserve, "J4 to J6 stood still at first, J5 and J6 for longer.",
          [](BoardBench& board) {
            const auto run = record(board);
-           for (const auto& answer : run.with_bits(kNoneHomed)) {
-             for (const auto joint : {kJ4, kJ5, kJ6}) {
-               board.about("before J1 to J3 are homed");
-               board.expect_same(answer, position_field(joint), run.first());
-             }
-           }
-           for (const auto& answer : run.with_bits(kFirstThreeHomed)) {
-             for (const auto joint : {kJ5, kJ6}) {
-               board.about("before J4 is homed");
-               board.expect_same(answer, position_field(joint), run.first());
-             }
-           }
+           expect_unmoved(board, run, kNoneHomed, {kJ4, kJ5, kJ6}, "before J1 to J3 are homed");
+           expect_unmoved(board, run, kFirstThreeHomed, {kJ5, kJ6}, "before J4 is homed");
          }),
 
     must("parol6.home.zero-at-switch",

@@ -42,7 +42,7 @@ class BusLog : public testing::Test {
   ~BusLog() override { fs::remove(path_); }
 
   [[nodiscard]] std::unique_ptr<BusPort> logged(std::unique_ptr<BusPort> port) const {
-    return std::make_unique<LoggedBus>(
+    return put_log_on(
         std::move(port),
         WireLog::create({.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value()},
                         {.device = "morap", .make_dissector = morap::make_dissector})

@@ -146,10 +146,10 @@ TEST_F(SessionLogTest, WritesTheTimesOfAllPortsByOneClock) {
       WireLog::create({.file = OutputFile::open(path_, OutputFile::Kind::kGrowing).value()},
                       {.device = "kinovazed", .make_dissector = kinovazed::make_dissector})
           .value();
-  LoggedSession late{std::make_unique<LatePort>(), log, 500ms};
-  LoggedSession early{std::make_unique<LatePort>(), log};
-  ASSERT_TRUE(late.connect({}));
-  ASSERT_TRUE(early.connect({}));
+  const auto late = put_log_on(std::make_unique<LatePort>(), log, 500ms);
+  const auto early = put_log_on(std::make_unique<LatePort>(), log);
+  ASSERT_TRUE(late->connect({}));
+  ASSERT_TRUE(early->connect({}));
   const auto all = events();
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].time, at(501ms));

@@ -41,7 +41,7 @@ class WireLog : public ::testing::Test {
 
   [[nodiscard]] std::unique_ptr<StreamPort> logged_arm() const {
     auto arm = std::make_unique<MemoryStream<parol6::emulation::Arm>>(parol6::emulation::Arm{});
-    return std::make_unique<LoggedStream>(std::move(arm), parol6_log(path_).value());
+    return put_log_on(std::move(arm), parol6_log(path_).value());
   }
   [[nodiscard]] Trace trace() const { return read_trace(path_).value(); }
   [[nodiscard]] std::vector<nlohmann::json> lines() const {
@@ -121,8 +121,7 @@ TEST_F(WireLog, LeavesOutWhatWasNotWritten) {
     }
     [[nodiscard]] Instant now() const override { return {}; }
   };
-  const auto port =
-      std::make_unique<LoggedStream>(std::make_unique<Broken>(), parol6_log(path_).value());
+  const auto port = put_log_on(std::make_unique<Broken>(), parol6_log(path_).value());
   std::array<std::byte, 8> buffer;
   EXPECT_FALSE(port->write(kIdleFrame));
   EXPECT_FALSE(port->read(buffer, {}));
@@ -145,9 +144,9 @@ TEST_F(WireLog, EndsWithAWholeLineWhereTheDiskIsFull) {
   {
     auto arm = std::make_unique<MemoryStream<parol6::emulation::Arm>>(parol6::emulation::Arm{});
     const LimitedFileSize limit{2'000};
-    LoggedStream port{std::move(arm), parol6_log(file).value()};
+    const auto port = put_log_on(std::move(arm), parol6_log(file).value());
     for (int i = 0; i < 20; ++i)
-      ASSERT_TRUE(port.write(kIdleFrame)) << "the device is not to blame";
+      ASSERT_TRUE(port->write(kIdleFrame)) << "the device is not to blame";
   }
   ASSERT_TRUE(file->failure());
   EXPECT_EQ(file->failure()->where, path_);
@@ -183,8 +182,7 @@ class CaptureOfAWire : public WireLog {
   [[nodiscard]] std::vector<std::string> recorded(LinkKind kind, Tell tell) const {
     for (const auto& [path, format] :
          {std::pair{path_, CaptureFormat::kLines}, std::pair{other_, CaptureFormat::kPcapng}}) {
-      LogOfOverheard log{begin(path, {.format = format}), kind};
-      tell(log);
+      tell(*write_overheard(begin(path, {.format = format}), kind));
     }
     EXPECT_EQ(events_of(path_), events_of(other_));
     return events_of(other_);
@@ -196,7 +194,7 @@ class CaptureOfAWire : public WireLog {
 TEST_F(CaptureOfAWire, HasTheSameInBothFormats) {
   EXPECT_THAT(
       recorded(LinkKind::kStream,
-               [](LogOfOverheard& log) {
+               [](Overhearer& log) {
                  log.to_device(at(1ms), Bytes{kIdleFrame}.first(2));
                  log.on_input(at(2ms), "estop", 1);
                  log.from_device(at(2ms), Bytes{kIdleFrame}.first(1));
@@ -213,7 +211,7 @@ TEST_F(CaptureOfAWire, HasConnectionsOfAServerAndHowTheyEnded) {
   using Kind = ConnectionEvent::Kind;
   const std::array byte{std::byte{65}};
   EXPECT_THAT(recorded(LinkKind::kSession,
-                       [&](LogOfOverheard& log) {
+                       [&](Overhearer& log) {
                          log.on_connection({at(1ms), 0, Kind::kBegun, {}});
                          log.on_connection({at(1ms), 1, Kind::kBegun, {}});
                          log.on_connection({at(2ms), 1, Kind::kToServer, byte});
@@ -235,7 +233,7 @@ TEST_F(CaptureOfAWire, HasConnectionsOfAServerAndHowTheyEnded) {
 TEST_F(CaptureOfAWire, HasPartsOfABus) {
   const std::array bytes{std::byte{1}, std::byte{2}};
   EXPECT_THAT(recorded(LinkKind::kBus,
-                       [&](LogOfOverheard& log) {
+                       [&](Overhearer& log) {
                          log.on_bus({.begin = at(1ms),
                                      .end = at(2ms),
                                      .address = 18,
@@ -274,11 +272,11 @@ TEST_F(CaptureOfAWire, RotatesIntoWholeFiles) {
   for (const auto format : {CaptureFormat::kLines, CaptureFormat::kPcapng}) {
     const auto first = other_.substr(0, other_.size() - 7) + ".1.pcapng";
     {
-      LogOfOverheard log{
+      const auto log = write_overheard(
           begin(other_,
                 {.format = format, .rotation = CaptureFile::Rotation{.bytes = 2'000, .files = 2}}),
-          LinkKind::kStream};
-      for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdleFrame);
+          LinkKind::kStream);
+      for (int i = 0; i < 100; ++i) log->to_device(at(i * 1ms), kIdleFrame);
     }
     const auto before = read_trace(first).value().events;
     const auto after = read_trace(other_).value().events;
@@ -295,8 +293,9 @@ TEST_F(CaptureOfAWire, RotatesIntoWholeFiles) {
 TEST_F(CaptureOfAWire, OfPacketsEndsWithAWholeOneWhereTheDiskIsFull) {
   {
     const LimitedFileSize limit{2'000};
-    LogOfOverheard log{begin(other_, {.format = CaptureFormat::kPcapng}), LinkKind::kStream};
-    for (int i = 0; i < 100; ++i) log.to_device(at(i * 1ms), kIdleFrame);
+    const auto log =
+        write_overheard(begin(other_, {.format = CaptureFormat::kPcapng}), LinkKind::kStream);
+    for (int i = 0; i < 100; ++i) log->to_device(at(i * 1ms), kIdleFrame);
   }
   const auto reader = CaptureReader::open(UserFile::open(other_).value(), other_).value();
   CaptureRecord record;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "emulators/replay/recorded_talk.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/wire/demo/demo.hpp"
 #include "tests/unit/support/devices.hpp"
