@@ -5,6 +5,7 @@
 
 #include <array>
 #include <chrono>
+#include <optional>
 
 #include "tests/unit/support/devices.hpp"
 
@@ -41,6 +42,13 @@ TEST(DeviceOnClock, AnswersSoonerIfItsClockIsFast) {
   EXPECT_EQ(answered({.begin = at(5s)}), at(11ms));
   EXPECT_EQ(answered({.rate = 2}), at(10500us));
   EXPECT_EQ(answered({.rate = 0.5}), at(12ms));
+}
+
+TEST(DeviceOnClock, IsLookedAtAsWell) {
+  const auto& bus = std::get<cli::OnBus>(test::device("morap").port);
+  const auto device = put_on_clock(bus.emulate({{"pen", "yes"}}, "").value(), {.rate = 1.01});
+  EXPECT_EQ(device->observe(at(1ms), "servo"), 45);
+  EXPECT_EQ(device->observe(at(1ms), "nothing"), std::nullopt);
 }
 
 }  // namespace

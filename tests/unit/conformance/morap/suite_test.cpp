@@ -55,6 +55,12 @@ TEST(MorapSuite, PassesOnTheFirmwareWithTheOtherMotorAtAnotherAddress) {
   EXPECT_THAT(not_passed(run("emulated:?motor=dcx26l&nodes=1&pen=yes")), testing::IsEmpty());
 }
 
+TEST(MorapSuite, AccusesNoShaftThatFrictionStops) {
+  const auto rows = not_passed(run("emulated:?dry=0.3", {.selection = {.filter = "morap.brake"}}));
+  EXPECT_THAT(rows, testing::SizeIs(2));
+  EXPECT_THAT(rows, testing::Each(testing::HasSubstr("needs a shaft that coasts")));
+}
+
 TEST(MorapSuite, PassesOnTheDocumentedNode) {
   EXPECT_THAT(not_passed(run("emulated:?profile=documented&pen=yes",
                              {.profile = armjig::Profile::kDocumented})),
