@@ -36,7 +36,7 @@ struct CheckOptions {
   PlanningOptions planning;
 };
 
-Exit refuse(const std::vector<script::Diagnostic>& errors, const std::string& file) {
+Exit refuse_script(const std::vector<script::Diagnostic>& errors, const std::string& file) {
   for (const auto& error : errors) fmt::print("{}\n", describe(error, file));
   return Exit::kUsage;
 }
@@ -48,7 +48,7 @@ Exit check(const CheckOptions& options) {
   const auto text = read_script_text(options.script);
   if (!text) return report(text.error());
   const auto program = script::parse(*text, dialect_of(options.script));
-  if (!program) return refuse(with_advice(program.error(), *text, options.script), file);
+  if (!program) return refuse_script(with_advice(program.error(), *text, options.script), file);
   const auto found = script::inspect(*program, planning->settings, planning->start).found;
   for (const auto& diagnostic : found) fmt::print("{}\n", describe(diagnostic, file));
   const bool is_clean = std::ranges::all_of(
