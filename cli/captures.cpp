@@ -75,6 +75,11 @@ struct Checked {
   bool is_of_capture = false;
 };
 
+std::string folder_of(const std::string& path) {
+  const auto folder = fs::path{path}.parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
 std::string first_line_of(std::string_view text) {
   const auto begin = std::min(text.find_first_not_of(' '), text.size());
   return std::string{text.substr(begin, text.find('\n') - begin)};
@@ -106,6 +111,7 @@ class Corpus {
     Checked checked{.path = path, .is_judged = true};
     auto& row = checked.row;
     row.name = fmt::format("captures.{}", path);
+    row.topic = folder_of(path);
     how_ ? replay(checked) : verify(checked);
     if (row.summary.empty()) row.summary = path;
     row.duration = std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - begin);
@@ -148,7 +154,7 @@ class Corpus {
       row.actual = "nothing is in there to be compared";
       return;
     }
-    judge(row, replayed->found.empty(), describe(replayed->found));
+    judge(row, replayed->found.empty(), describe(replayed->found, devices_));
   }
 
   /// Its host's side is played once more, and what passes is recorded.

@@ -48,6 +48,7 @@ void add_lab(CLI::App& app, Devices devices, Action& action);
 void add_latency(CLI::App& app, Devices devices, Action& action);
 void add_record(CLI::App& app, Devices devices, Action& action);
 void add_replay(CLI::App& app, Devices devices, Action& action);
+void add_shadow(CLI::App& app, Devices devices, Action& action);
 void add_trace(CLI::App& app, Devices devices, Action& action);
 void add_watch(CLI::App& app, Devices devices, Action& action);
 void add_wireshark(CLI::App& app, Devices devices, Action& action);

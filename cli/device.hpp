@@ -22,6 +22,7 @@
 #include "emulators/replay/on_port.hpp"
 #include "emulators/replay/replay.hpp"
 #include "emulators/sessions/sessions.hpp"
+#include "emulators/shadow/fit.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/config/option_file.hpp"
 #include "harness/console/device_console.hpp"
@@ -107,6 +108,8 @@ struct Device {
   DrawSession draw_session{};                        ///< none: nothing is drawn at random
   FuzzEntry fuzz{};
   Dissection (*dissection)(){};  ///< none: Wireshark is told nothing
+  /// What of the emulated device can be told from a recording of a board; none: nothing.
+  std::span<const FitFigure> (*figures)() noexcept {};
   double watch_rate = 10;  ///< questions, or looks, a second unless the user wants another one
   std::vector<AddOwnCommand> commands{};
 };

@@ -16,6 +16,7 @@
 #include "cli/device.hpp"
 #include "cli/foreign_options.hpp"
 #include "cli/outputs.hpp"
+#include "conformance/suite.hpp"
 #include "harness/capture/message_json.hpp"
 #include "harness/compare/recording_diff.hpp"
 #include "harness/compare/rules.hpp"
@@ -81,6 +82,39 @@ std::map<std::string, std::size_t> by_field(const Differences& found) {
   return counts;
 }
 
+/// A requirement, and how often what it speaks of differs.
+struct Concerned {
+  Requirement requirement;
+  std::size_t times{};
+};
+
+/// What of a message differs, in the words of `Subject`.
+std::vector<std::string_view> aspects_of(const RecordingDifference& one) {
+  if (one.change == Change::kMissing || one.change == Change::kExtra) return {"message"};
+  std::vector<std::string_view> aspects;
+  for (const std::string_view what : one.what) aspects.push_back(what.substr(0, what.find(':')));
+  return aspects;
+}
+
+/// By id. What no requirement speaks of is in none.
+std::map<std::string_view, Concerned> by_requirement(const Differences& found, Devices devices) {
+  std::map<std::string_view, Concerned> all;
+  for (const auto& one : found) {
+    // A lane begins with the device.
+    const auto* const device =
+        find_recorded_device(devices, one.lane.substr(0, one.lane.find(' ')));
+    if (device == nullptr) continue;
+    const auto suite = device->suite();
+    const auto name = (one.before != nullptr ? one.before : one.after)->message.name;
+    for (const auto aspect : aspects_of(one)) {
+      const auto* const requirement = find_requirement_about(suite, name, aspect);
+      if (requirement == nullptr) continue;
+      ++all.try_emplace(requirement->id, Concerned{*requirement}).first->second.times;
+    }
+  }
+  return all;
+}
+
 std::string summary_of(const Differences& found) {
   std::string text;
   for (const auto change : {Change::kChanged, Change::kMissing, Change::kExtra, Change::kMoved}) {
@@ -91,7 +125,7 @@ std::string summary_of(const Differences& found) {
   return text;
 }
 
-void print_json(const Differences& found) {
+void print_json(const Differences& found, Devices devices) {
   const auto message_of = [](const RecordedMessage& message) {
     auto json = message_object<Json>(message.message);
     if (!message.note.empty()) json["note"] = message.note;
@@ -99,6 +133,10 @@ void print_json(const Differences& found) {
   };
   Json json{{"schema", "armjig.diff/1"}, {"equal", found.empty()}, {"fields", Json::object()}};
   for (const auto& [field, count] : by_field(found)) json["fields"][field] = count;
+  json["requirements"] = Json::object();
+  for (const auto& [id, concerned] : by_requirement(found, devices)) {
+    json["requirements"][std::string{id}] = concerned.times;
+  }
   json["differences"] = Json::array();
   for (const auto& one : found) {
     Json entry{{"change", to_string(one.change)}, {"lane", one.lane}, {"what", one.what}};
@@ -135,12 +173,19 @@ Report page_of(const Compared& compared, const Differences& found) {
   for (const auto& [field, count] : by_field(found)) {
     fields.table.rows.push_back({field, std::to_string(count)});
   }
+  auto& requirements = page.sections.emplace_back();
+  requirements.title = "By requirement";
+  requirements.table.columns = {"requirement", "what it demands", "times"};
+  for (const auto& [id, concerned] : by_requirement(found, compared.devices)) {
+    requirements.table.rows.push_back({std::string{id}, std::string{concerned.requirement.text},
+                                       std::to_string(concerned.times)});
+  }
   return page;
 }
 
 }  // namespace
 
-std::string describe(const Differences& found) {
+std::string describe(const Differences& found, Devices devices) {
   constexpr std::size_t kMostShown = 100;
   std::string text;
   const auto add = std::back_inserter(text);
@@ -156,15 +201,19 @@ std::string describe(const Differences& found) {
   for (const auto& [field, count] : by_field(found)) {
     fmt::format_to(add, "{:>8} times {}\n", count, wording::line(field));
   }
+  for (const auto& [id, concerned] : by_requirement(found, devices)) {
+    fmt::format_to(add, "{:>8} times what {} speaks of: {}\n", concerned.times, id,
+                   concerned.requirement.text);
+  }
   fmt::format_to(add, "{}\n", found.empty() ? "equal" : "different: " + summary_of(found));
   return text;
 }
 
 Exit tell(const Differences& found, const Compared& compared, bool wants_json, const Output& html) {
   if (wants_json) {
-    print_json(found);
+    print_json(found, compared.devices);
   } else {
-    fmt::print("{}", describe(found));
+    fmt::print("{}", describe(found, compared.devices));
   }
   if (html) html->put(to_html(page_of(compared, found)));
   if (compared.messages == 0) return Exit::kNothing;
@@ -208,7 +257,7 @@ Exit compare(Devices devices, const DiffOptions& options) {
     return refuse(read.error());
   }
   const auto found = diff(before, after, *rules);
-  return tell(found, {options.before, options.after, before.count() + after.count()},
+  return tell(found, {options.before, options.after, before.count() + after.count(), devices},
               options.comparison.wants_json, files->front());
 }
 

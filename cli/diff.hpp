@@ -31,10 +31,12 @@ struct Compared {
   std::string before;
   std::string after;
   std::size_t messages{};
+  Devices devices;  ///< whose requirements speak of what differs
 };
 
-/// The first of them with fields, a summary by field, and a verdict: several lines.
-[[nodiscard]] std::string describe(const std::vector<RecordingDifference>& found);
+/// The first of them with fields, summaries by field and by requirement, and a verdict: several
+/// lines.
+[[nodiscard]] std::string describe(const std::vector<RecordingDifference>& found, Devices devices);
 
 /// On standard output what `describe` says, or one JSON object; on the page, if there is one, both
 /// side by side. Answers the exit code.

@@ -30,10 +30,11 @@
 namespace armjig::cli {
 namespace {
 
-constexpr std::array kCommands{
-    add_captures, add_conformance, add_console, add_decode, add_devices,   add_diff,
-    add_doctor,   add_emulate,     add_fuzz,    add_kin,    add_lab,       add_latency,
-    add_record,   add_replay,      add_trace,   add_watch,  add_wireshark, add_completion};
+constexpr std::array kCommands{add_captures, add_conformance, add_console,   add_decode,
+                               add_devices,  add_diff,        add_doctor,    add_emulate,
+                               add_fuzz,     add_kin,         add_lab,       add_latency,
+                               add_record,   add_replay,      add_shadow,    add_trace,
+                               add_watch,    add_wireshark,   add_completion};
 
 constexpr auto kDescription =
     "Test jig for robot-arm controllers and the programs that drive them.\n"

@@ -93,7 +93,8 @@ Exit replay(Devices devices, const ReplayOptions& options) {
   if (!replayed) return report(replayed.error());
   print_left_out(*replayed);
   return tell(replayed->found,
-              {options.file, is_device ? options.listen : options.target.target, replayed->count()},
+              {options.file, is_device ? options.listen : options.target.target, replayed->count(),
+               devices},
               options.comparison.wants_json, files->front());
 }
 

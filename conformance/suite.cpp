@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace armjig {
 
@@ -36,6 +37,26 @@ const Requirement* find_requirement(const Suite& suite, std::string_view id) noe
     if (found != chapter.requirements.end()) return &*found;
   }
   return nullptr;
+}
+
+const Requirement* find_requirement_about(const Suite& suite, std::string_view message,
+                                          std::string_view aspect) noexcept {
+  const auto speaks = [&](const Subject& subject) {
+    const auto name = subject.aspect;
+    const bool is_of_it =
+        aspect.starts_with(name) && (aspect.size() == name.size() || aspect[name.size()] == '.');
+    return is_of_it && (subject.message.empty() || subject.message == message);
+  };
+  const auto precision = [](const Subject& subject) {
+    return std::pair{!subject.message.empty(), subject.aspect.size()};
+  };
+  const Subject* best = nullptr;
+  for (const auto& subject : suite.subjects) {
+    if (speaks(subject) && (best == nullptr || precision(subject) > precision(*best))) {
+      best = &subject;
+    }
+  }
+  return best == nullptr ? nullptr : find_requirement(suite, best->requirement);
 }
 
 const Requirement& requirement_of(const Suite& suite, const Case& one) noexcept {

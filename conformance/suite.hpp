@@ -84,17 +84,33 @@ struct Chapter {
 [[nodiscard]] Chapter chapter(std::string_view title, std::span<const Clause> clauses);
 [[nodiscard]] Chapter chapter(std::string_view title, std::span<const Requirement> requirements);
 
+/// Of what in messages a requirement speaks, so that what differs in two recordings can be told by
+/// requirements. Of several the one that names the message counts, then the longest field.
+struct Subject {
+  std::string_view message{};  ///< the kind; empty: any
+  /// A field, or what it begins with up to a dot; `message`: that it comes; `time`: when; `note`:
+  /// what was acknowledged; `bytes`: what no field has.
+  std::string_view aspect;
+  std::string_view requirement;  ///< its id
+};
+
 /// All that is known about one device.
 struct Suite {
   std::string_view device;
   std::string_view version;  ///< of the catalogue; changes with every requirement and case
   std::span<const Chapter> chapters;
   std::span<const StartState> starts;
-  Document document{};  ///< none: reports name no place
+  Document document{};                  ///< none: reports name no place
+  std::span<const Subject> subjects{};  ///< none: differences are told by field only
 };
 
 /// The requirement of that id, or nullptr.
 [[nodiscard]] const Requirement* find_requirement(const Suite& suite, std::string_view id) noexcept;
+
+/// The requirement that speaks of that aspect of a message, as `Subject` has it, or nullptr.
+[[nodiscard]] const Requirement* find_requirement_about(const Suite& suite,
+                                                        std::string_view message,
+                                                        std::string_view aspect) noexcept;
 
 /// The requirement of a case. Every case has one; a test proves it.
 [[nodiscard]] const Requirement& requirement_of(const Suite& suite, const Case& one) noexcept;

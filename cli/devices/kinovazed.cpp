@@ -6,6 +6,7 @@
 #include "emulators/kinovazed/options.hpp"
 #include "emulators/replay/kinovazed_matrix.hpp"
 #include "emulators/replay/kinovazed_rules.hpp"
+#include "emulators/shadow/kinovazed_figures.hpp"
 #include "harness/console/kinovazed/console.hpp"
 #include "harness/latency/kinovazed_probe.hpp"
 #include "harness/rig/kinovazed_judge.hpp"
@@ -47,7 +48,8 @@ cli::Device device() {
                      .verify_table = replay::verify_matrix},
           .draw_session = sessions::draw,
           .fuzz = {.live_rules = kLiveRules},
-          .dissection = dissection};
+          .dissection = dissection,
+          .figures = shadow::figures};
 }
 
 }  // namespace armjig::kinovazed

@@ -5,6 +5,7 @@
 #include "conformance/morap/host/check.hpp"
 #include "conformance/morap/suite.hpp"
 #include "emulators/morap/options.hpp"
+#include "emulators/shadow/morap_figures.hpp"
 #include "harness/console/morap/console.hpp"
 #include "harness/latency/morap_follower.hpp"
 #include "harness/latency/morap_probe.hpp"
@@ -53,6 +54,7 @@ cli::Device device() {
           .draw_session = sessions::draw,
           .fuzz = {.live_rules = kLiveRules},
           .dissection = dissection,
+          .figures = shadow::figures,
           .commands = {cli::add_i2c, cli::add_morap}};
 }
 

@@ -5,6 +5,7 @@
 #include "conformance/parol6/host/check.hpp"
 #include "conformance/parol6/suite.hpp"
 #include "emulators/parol6/options.hpp"
+#include "emulators/shadow/parol6_figures.hpp"
 #include "harness/console/parol6/console.hpp"
 #include "harness/latency/parol6_follower.hpp"
 #include "harness/latency/parol6_probe.hpp"
@@ -52,6 +53,7 @@ cli::Device device() {
           .draw_session = sessions::draw,
           .fuzz = {.live_rules = kLiveRules},
           .dissection = dissection,
+          .figures = shadow::figures,
           .watch_rate = 100,
           .commands = {cli::add_plan, cli::add_run, cli::add_script}};
 }

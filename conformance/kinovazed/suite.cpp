@@ -21,6 +21,24 @@ constexpr std::array kStarts{
     StartState{"just started", Hazard::kObserve},
 };
 
+constexpr std::array kSubjects{
+    Subject{"Heartbeat", "message", "kinovazed.beat.single"},
+    Subject{"Heartbeat", "time", "kinovazed.beat.period"},
+    Subject{"Heartbeat", "state", "kinovazed.beat.values"},
+    Subject{"Heartbeat", "bytes", "kinovazed.reply.words"},
+    Subject{"Accepted", "message", "kinovazed.reply.one"},
+    Subject{"Accepted", "time", "kinovazed.time.answer"},
+    Subject{"Rejected", "message", "kinovazed.reply.one"},
+    Subject{"Rejected", "time", "kinovazed.time.answer"},
+    Subject{"Initialized", "message", "kinovazed.event.table"},
+    Subject{"Retracted", "message", "kinovazed.event.table"},
+    Subject{"Unfolded", "message", "kinovazed.event.table"},
+    Subject{"Freezed", "message", "kinovazed.reply.prompt"},
+    Subject{"JoystickModeSet", "message", "kinovazed.mode.settles"},
+    Subject{"ObjectiveDone", "message", "kinovazed.objective.reached"},
+    Subject{"ObjectiveDone", "time", "kinovazed.objective.takes-its-time"},
+};
+
 }  // namespace
 
 Suite suite() noexcept {
@@ -39,7 +57,8 @@ Suite suite() noexcept {
       death_chapter(),
       chapter("Client programs", programs::host_requirements()),
   };
-  return {"kinovazed", "0.3", kChapters, kStarts, shipped_document("docs/spec/kinovazed.md")};
+  return {"kinovazed", "0.3", kChapters, kStarts, shipped_document("docs/spec/kinovazed.md"),
+          kSubjects};
 }
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<SessionSource> rig, const RigOptions& how) {

@@ -18,6 +18,20 @@ constexpr std::array kStarts{
     StartState{"calibrated, the shaft free", Hazard::kProgram},
 };
 
+constexpr std::array kSubjects{
+    Subject{{}, "note", "morap.bus.acknowledges"},
+    Subject{"angle", "angle", "morap.angle.scale"},
+    Subject{"position_reference", "position_reference", "morap.reference.position"},
+    Subject{"speed_reference", "speed_reference", "morap.reference.speed"},
+    Subject{"motor_status", "motor_status", "morap.status.at-boot"},
+    Subject{"programming_status", "programming_status", "morap.program.status-at-boot"},
+    Subject{"applied_voltage", "applied_voltage", "morap.voltage.close"},
+    Subject{"current", "current", "morap.current.scale"},
+    Subject{"own_address", "own_address", "morap.read.address"},
+    Subject{"position_set", "checksum", "morap.read.set-checksum"},
+    Subject{"speed_set", "checksum", "morap.read.set-checksum"},
+};
+
 }  // namespace
 
 Suite suite() noexcept {
@@ -27,7 +41,7 @@ Suite suite() noexcept {
       tune_chapter(),       loop_chapter(),    motion_chapter(),
       documented_chapter(), pen_chapter(),     chapter("Masters", programs::host_requirements()),
   };
-  return {"morap", "0.3", kChapters, kStarts, shipped_document("docs/spec/morap.md")};
+  return {"morap", "0.3", kChapters, kStarts, shipped_document("docs/spec/morap.md"), kSubjects};
 }
 
 }  // namespace armjig::morap::conformance

@@ -18,6 +18,26 @@ constexpr std::array kStarts{
     StartState{"enabled", Hazard::kState},
 };
 
+constexpr std::array kSubjects{
+    Subject{"telemetry", "message", "parol6.frame.one-answer"},
+    Subject{"telemetry", "time", "parol6.frame.prompt"},
+    Subject{"telemetry", "bytes", "parol6.telemetry.layout"},
+    Subject{"telemetry", "position", "parol6.telemetry.position-own-joint"},
+    Subject{"telemetry", "speed", "parol6.telemetry.speed-own-joint"},
+    Subject{"telemetry", "homed", "parol6.home.bits"},
+    Subject{"telemetry", "io", "parol6.io.sampled"},
+    Subject{"telemetry", "temperature_error", "parol6.telemetry.temperature-error"},
+    Subject{"telemetry", "position_error", "parol6.telemetry.no-position-error"},
+    Subject{"telemetry", "timing", "parol6.telemetry.timing"},
+    Subject{"telemetry", "timeout_error", "parol6.telemetry.timeout-error"},
+    Subject{"telemetry", "echo", "parol6.telemetry.echo"},
+    Subject{"telemetry", "gripper", "parol6.gripper.latest"},
+    Subject{"telemetry", "gripper.id", "parol6.telemetry.gripper-id"},
+    Subject{"telemetry", "gripper.speed", "parol6.telemetry.gripper-speed"},
+    Subject{"telemetry", "gripper.object", "parol6.telemetry.gripper-object"},
+    Subject{"telemetry", "check", "parol6.telemetry.check"},
+};
+
 }  // namespace
 
 Suite suite() noexcept {
@@ -28,7 +48,7 @@ Suite suite() noexcept {
       go_to_chapter(), home_chapter(),    home_run_chapter(),
       demo_chapter(),  gripper_chapter(), chapter("Host programs", programs::host_requirements()),
   };
-  return {"parol6", "0.3", kChapters, kStarts, shipped_document("docs/spec/parol6.md")};
+  return {"parol6", "0.3", kChapters, kStarts, shipped_document("docs/spec/parol6.md"), kSubjects};
 }
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<StreamPort> rig, const RigOptions& /*how*/) {

@@ -50,38 +50,63 @@ class Counter {
   std::unique_ptr<Dissector> dissector_;
 };
 
+std::uint32_t connection_of(const KeptRecord& record) {
+  return record.kind == LinkKind::kEvents ? static_cast<std::uint32_t>(number_in(record, "conn", 0))
+                                          : record.id;
+}
+
+/// A record to play, or to wait for.
+struct TalkStep {
+  KeptRecord record;
+  std::size_t awaited{};        ///< of the host: so many messages and borders of its connection
+  std::size_t awaited_bytes{};  ///< so many bytes, too, if no message ends with it
+};
+
+/// How much the host of a recording has said by each of its records.
+class HostWords {
+ public:
+  explicit HostWords(MakeDissector make_dissector) : make_dissector_{make_dissector} {}
+
+  void count(TalkStep& step) {
+    const auto& record = step.record;
+    auto& [counter, messages, bytes] =
+        said_.try_emplace(connection_of(record), Said{Counter{make_dissector_}}).first->second;
+    if (is_border(record)) {
+      ++messages;
+    } else {
+      const auto whole = counter.add(record.time, record.bytes);
+      messages += whole;
+      bytes += record.bytes.size();
+      if (whole == 0) step.awaited_bytes = bytes;
+    }
+    step.awaited = messages;
+  }
+
+ private:
+  struct Said {
+    Counter counter;
+    std::size_t messages{};
+    std::size_t bytes{};
+  };
+
+  MakeDissector make_dissector_;
+  std::map<std::uint32_t, Said> said_;  ///< by connection
+};
+
 /// The recording on its way: what is said next, and what is waited for before.
 class Talk {
  public:
   Talk(std::vector<KeptRecord> records, const DeviceRole& role) : role_{role} {
-    std::map<std::uint32_t, Counter> counters;
-    std::map<std::uint32_t, std::size_t> counts;
-    std::map<std::uint32_t, std::size_t> sizes;
+    HostWords words{role.make_dissector};
     for (auto& record : records) {
       if (record.kind == LinkKind::kEvents && !is_border(record)) {
         leave_out(record);
         continue;
       }
-      Step step{std::move(record), 0};
+      TalkStep step{std::move(record)};
       if (!is_by_device(step.record)) {
-        const auto id = step.record.id;
-        auto& count = counts[connection_of(step.record)];
-        if (is_border(step.record)) {
-          ++count;
-          if (what_of(step.record) == "connect")
-            recorded_begins_.insert(connection_of(step.record));
-        } else {
-          auto counter = counters.try_emplace(id, role.make_dissector).first;
-          const auto whole = counter->second.add(step.record.time, step.record.bytes);
-          count += whole;
-          sizes[id] += step.record.bytes.size();
-          if (whole == 0) step.awaited_bytes = sizes[id];
-        }
-        step.awaited = count;
-        said_->expected.push_back(is_border(step.record)
-                                      ? border(step.record.time, connection_of(step.record),
-                                               what_of(step.record), text_in(step.record, "text"))
-                                      : step.record);
+        words.count(step);
+        expect(step.record);
       }
       steps_.push_back(std::move(step));
     }
@@ -149,41 +174,41 @@ class Talk {
   }
   /// Whether the recording's connection of that number began or ended so: `refused`.
   [[nodiscard]] bool has_end(std::uint32_t id, std::string_view how) const {
-    return std::ranges::any_of(steps_, [&](const Step& step) {
+    return std::ranges::any_of(steps_, [&](const TalkStep& step) {
       return is_border(step.record) && connection_of(step.record) == id &&
              text_in(step.record, "text") == how;
     });
   }
 
  private:
-  struct Step {
-    KeptRecord record;
-    std::size_t awaited{};        ///< of the host: so many messages and borders of its connection
-    std::size_t awaited_bytes{};  ///< so many bytes, too, if no message ends with it
-  };
-
   struct Heard {
     std::vector<Instant> moments;                        ///< of messages and borders
     std::vector<std::pair<std::size_t, Instant>> bytes;  ///< so many bytes by then
   };
 
-  static std::uint32_t connection_of(const KeptRecord& record) {
-    return record.kind == LinkKind::kEvents
-               ? static_cast<std::uint32_t>(number_in(record, "conn", 0))
-               : record.id;
+  /// Of the host, in the words in which it is heard.
+  void expect(const KeptRecord& record) {
+    if (!is_border(record)) {
+      said_->expected.push_back(record);
+      return;
+    }
+    const auto id = connection_of(record);
+    const auto what = what_of(record);
+    if (what == "connect") recorded_begins_.insert(id);
+    said_->expected.push_back(border(record.time, id, what, text_in(record, "text")));
   }
   [[nodiscard]] Duration scaled(Duration recorded) const {
     if (role_.speed == 1) return recorded;
     return std::chrono::duration_cast<Duration>(std::chrono::duration<double>{recorded} /
                                                 role_.speed);
   }
-  [[nodiscard]] Instant due_of(const Step& step) const {
+  [[nodiscard]] Instant due_of(const TalkStep& step) const {
     return anchor_ + scaled(step.record.time - recorded_anchor_);
   }
   [[nodiscard]] Instant end() const { return std::max(spoken_, anchor_) + scaled(role_.trailing); }
 
   /// When all of it had come.
-  [[nodiscard]] std::optional<Instant> arrival_of(const Step& step) const {
+  [[nodiscard]] std::optional<Instant> arrival_of(const TalkStep& step) const {
     const auto heard = heard_.find(connection_of(step.record));
     if (heard == heard_.end()) return std::nullopt;
     const auto& [moments, bytes] = heard->second;
@@ -195,7 +220,7 @@ class Talk {
     if (step.awaited > 0) arrival = std::max(arrival, moments[step.awaited - 1]);
     return step.awaited_bytes > 0 ? std::max(arrival, came->second) : arrival;
   }
-  void set_anchor(Instant time, const Step& step) {
+  void set_anchor(Instant time, const TalkStep& step) {
     anchor_ = std::max(anchor_, time);
     recorded_anchor_ = step.record.time;
     has_heard_ = true;
@@ -212,7 +237,7 @@ class Talk {
   void leave_out(const KeptRecord& record) { ++said_->left_out[what_of(record)]; }
 
   DeviceRole role_;
-  std::vector<Step> steps_;
+  std::vector<TalkStep> steps_;
   std::size_t next_ = 0;
   bool has_begun_ = false;
   bool has_heard_ = false;                   ///< anything of the host

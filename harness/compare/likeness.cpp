@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <tuple>
 
 #include "harness/core/hex.hpp"
 
@@ -36,10 +37,27 @@ bool is_only_in_fields(const Message& one, const Message& other) {
   return true;
 }
 
+Instant begin_of(const RecordedMessage& message) {
+  return message.earlier.empty() ? message.message.time : message.earlier.front();
+}
+
 }  // namespace
 
-bool Likeness::is_in_time(const RecordedMessage& one, const RecordedMessage& other) const {
-  return std::chrono::abs(one.message.time - other.message.time) <= rules_.time_tolerance;
+std::optional<Likeness::Times> Likeness::first_apart(const RecordedMessage& one,
+                                                     const RecordedMessage& other) const {
+  const auto are_near = [this](Times times) {
+    return std::chrono::abs(times.first - times.second) <= rules_.time_tolerance;
+  };
+  const auto& [before, after] = std::tie(one.earlier, other.earlier);
+  // In other pieces only the first and the last byte have a time that can be told.
+  const auto known = before.size() == after.size() ? before.size() : std::size_t{0};
+  for (std::size_t i = 0; i < known; ++i) {
+    if (const Times times{before[i], after[i]}; !are_near(times)) return times;
+  }
+  const Times begins{begin_of(one), begin_of(other)};
+  if (!are_near(begins)) return begins;
+  const Times ends{one.message.time, other.message.time};
+  return are_near(ends) ? std::nullopt : std::optional{ends};
 }
 
 bool Likeness::has_same_content(const RecordedMessage& a, const RecordedMessage& b) const {
@@ -57,9 +75,9 @@ bool Likeness::has_same_content(const RecordedMessage& a, const RecordedMessage&
 std::vector<std::string> Likeness::differences(const RecordedMessage& a,
                                                const RecordedMessage& b) const {
   std::vector<std::string> what;
-  if (!is_in_time(a, b)) {
-    what.push_back(fmt::format("time: {} us, {} us", microseconds(a.message.time),
-                               microseconds(b.message.time)));
+  if (const auto times = first_apart(a, b)) {
+    what.push_back(
+        fmt::format("time: {} us, {} us", microseconds(times->first), microseconds(times->second)));
   }
   if (a.note != b.note) what.push_back(fmt::format("note: {}, {}", a.note, b.note));
   if (a.rest != b.rest) {

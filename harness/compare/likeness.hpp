@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/compare/recording_diff.hpp"
@@ -14,13 +16,21 @@ class Likeness {
  public:
   explicit Likeness(const ComparisonRules& rules) : rules_{rules} {}
 
-  [[nodiscard]] bool is_in_time(const RecordedMessage& one, const RecordedMessage& other) const;
+  /// All of it: a message may have come in parts. How many there were does not matter.
+  [[nodiscard]] bool is_in_time(const RecordedMessage& one, const RecordedMessage& other) const {
+    return !first_apart(one, other);
+  }
   [[nodiscard]] bool has_same_content(const RecordedMessage& a, const RecordedMessage& b) const;
   /// What differs beyond the rules: time, note, rest, fields or bytes, `NAME: ONE, OTHER`.
   [[nodiscard]] std::vector<std::string> differences(const RecordedMessage& a,
                                                      const RecordedMessage& b) const;
 
  private:
+  using Times = std::pair<Instant, Instant>;
+  /// When the first part of both came that is too early or too late.
+  [[nodiscard]] std::optional<Times> first_apart(const RecordedMessage& one,
+                                                 const RecordedMessage& other) const;
+
   const ComparisonRules& rules_;
 };
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "harness/capture/trace.hpp"
 #include "harness/compare/likeness.hpp"
@@ -280,16 +281,24 @@ Outcome<void> RecordedMessages::add(const CaptureRecord& record) {
   if (talk.dissector && lost_before(record) > 0) {
     talk.dissector->finish(messages);
     talk.dissector.reset();
-    keep_all(talk.name, messages, {});
+    keep_all(talk, messages, {});
+    talk.pending.clear();
   }
   if (!talk.dissector) talk.dissector = make_dissector();
   talk.name = whose;
   talk.dissector->feed(record.direction, record.time, is_bus ? Bytes{bus_message} : record.bytes,
                        messages);
   if (is_bus && messages.empty()) messages.push_back(whole);
-  keep_all(
-      whose, messages, is_bus ? note_of(record) : std::string{},
-      link.kind == LinkKind::kSession ? rest_of(record.bytes, messages) : std::vector<std::byte>{});
+  auto& pending = talk.pending[record.direction];
+  const bool has_rest = link.kind == LinkKind::kSession;
+  if (has_rest) pending.bytes.insert(pending.bytes.end(), record.bytes.begin(), record.bytes.end());
+  if (messages.empty()) {
+    pending.times.push_back(record.time);
+    return {};
+  }
+  const auto bytes = std::exchange(pending.bytes, {});
+  keep_all(talk, messages, is_bus ? note_of(record) : std::string{},
+           has_rest ? rest_of(bytes, messages) : std::vector<std::byte>{});
   return {};
 }
 
@@ -297,7 +306,7 @@ void RecordedMessages::finish() {
   for (auto& [where, talk] : talks_) {
     std::vector<Message> messages;
     talk.dissector->finish(messages);
-    keep_all(talk.name, messages, {});
+    keep_all(talk, messages, {});
   }
 }
 
@@ -307,11 +316,13 @@ void RecordedMessages::keep(const std::string& lane, RecordedMessage message) {
   ++count_;
 }
 
-void RecordedMessages::keep_all(const std::string& talk, std::vector<Message>& messages,
-                                const std::string& note, const std::vector<std::byte>& rest) {
+void RecordedMessages::keep_all(Talk& talk, std::vector<Message>& messages, const std::string& note,
+                                const std::vector<std::byte>& rest) {
   for (auto& message : messages) {
     const bool is_last = &message == &messages.back();
-    keep(talk, {std::move(message), note, is_last ? rest : std::vector<std::byte>{}});
+    auto& earlier = talk.pending[message.direction].times;
+    keep(talk.name, {std::move(message), note, is_last ? rest : std::vector<std::byte>{},
+                     std::exchange(earlier, {})});
   }
   messages.clear();
 }

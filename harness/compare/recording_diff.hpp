@@ -22,6 +22,8 @@ struct RecordedMessage {
   std::string note;  ///< what bytes do not say, members of a JSON object: acknowledgements, events
   std::vector<std::byte>
       rest{};  ///< of a session: what came with it and is in no message, line ends
+  /// When the parts of it came that came before its last one.
+  std::vector<Instant> earlier{};
 };
 
 /// The messages of a recording, by direction and connection, address or identifier.
@@ -44,12 +46,18 @@ class RecordedMessages {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
  private:
+  /// What was said in one direction and has ended no message yet.
+  struct Pending {
+    std::vector<std::byte> bytes;
+    std::vector<Instant> times;
+  };
   struct Talk {
     std::unique_ptr<Dissector> dissector;
     std::string name;
+    std::map<Direction, Pending> pending;
   };
   void keep(const std::string& lane, RecordedMessage message);
-  void keep_all(const std::string& talk, std::vector<Message>& messages, const std::string& note,
+  void keep_all(Talk& talk, std::vector<Message>& messages, const std::string& note,
                 const std::vector<std::byte>& rest = {});
 
   std::function<MakeDissector(std::string_view)> find_dissector_;

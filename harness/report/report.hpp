@@ -58,6 +58,9 @@ struct ReportRow {
   Duration duration{};   ///< zero: not measured
   /// Skipped because of what the run was told, or what its link or its hands cannot do.
   bool is_left_out = false;
+  /// What stands together: a suite in JUnit, a part of the page. Empty: the name says it, with the
+  /// first two words of three or more.
+  std::string topic{};
 };
 
 /// A table as it is read: one cell a column, written out with its unit.

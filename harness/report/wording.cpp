@@ -58,7 +58,9 @@ std::string printable(std::string_view text, Breaks breaks) {
   return out;
 }
 
-std::string_view topic_of(std::string_view name) noexcept {
+std::string_view topic_of(const ReportRow& row) noexcept {
+  if (!row.topic.empty()) return row.topic;
+  const std::string_view name = row.name;
   const auto first = name.find('.');
   if (first == std::string_view::npos) return name;
   const auto second = name.find('.', first + 1);
@@ -102,7 +104,7 @@ bool is_reason(Verdict verdict) noexcept {
 std::vector<Topic> topics_of(const Report& report) {
   std::vector<Topic> topics;
   for (const auto& row : report.rows) {
-    const auto name = topic_of(row.name);
+    const auto name = topic_of(row);
     auto topic = std::ranges::find(topics, name, &Topic::name);
     if (topic == topics.end()) topic = topics.insert(topic, Topic{name, {}});
     topic->rows.push_back(&row);

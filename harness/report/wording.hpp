@@ -32,8 +32,8 @@ namespace armjig::wording {
 
 using Rows = std::vector<const ReportRow*>;
 
-/// Rows whose names begin alike: with device and topic, the first two words of three or more, or
-/// else with the first word.
+/// Rows of one topic, or whose names begin alike: with device and topic, the first two words of
+/// three or more, or else with the first word.
 struct Topic {
   std::string_view name;
   Rows rows;

@@ -12,8 +12,8 @@ namespace armjig {
 namespace {
 
 constexpr auto kForms =
-    "this is no target; write emulated:, serial:PATH, usb:VID:PID, pty:PATH, tcp:HOST:PORT or "
-    "rfc2217:HOST:PORT; "
+    "this is no target; write emulated:, serial:PATH, usb:VID:PID, pty:PATH, tcp:HOST:PORT, "
+    "rfc2217:HOST:PORT or i2c:DEVICE; "
     "'armjig devices' lists what is plugged in";
 
 }  // namespace
@@ -30,7 +30,9 @@ Outcome<Target> parse_target(std::string_view text) {
   Target target;
   target.text = text;
   const auto colon = text.find(':');
-  if (colon == std::string_view::npos) return no_target(text);
+  const bool is_known = colon != std::string_view::npos &&
+                        std::ranges::count(kTargetSchemes, text.substr(0, colon + 1)) > 0;
+  if (!is_known) return no_target(text);
   target.scheme = text.substr(0, colon);
   auto rest = text.substr(colon + 1);
   // Only emulated targets have options; a path or host may contain a question mark.

@@ -91,6 +91,15 @@ class CapturesCheck(unittest.TestCase):
                 self.assertEqual((suites.get("tests"), suites.get("failures")), ("3", "1"))
                 file.write_text(whole)
 
+    def test_each_folder_is_a_suite(self):
+        self.add_golden()
+        junit = self.folder / "junit.xml"
+        self.check("--junit", junit)
+        suites = xml.etree.ElementTree.parse(junit).getroot().findall("testsuite")
+        self.assertEqual(sorted(suite.get("name") for suite in suites),
+                         sorted(f"{self.corpus}/{device}" for device in GOLDEN))
+        self.assertEqual({suite.get("tests") for suite in suites}, {"1"})
+
     def test_shards_together_have_each_recording_once(self):
         self.add_golden()
         self.add_captures()

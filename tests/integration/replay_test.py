@@ -122,9 +122,11 @@ class Replay(unittest.TestCase):
         done = self.run_armjig("replay", other, "--target", "emulated:", code=1)
         self.assertIn("state: ", done.stdout)
         self.assertIn("1 times state", done.stdout)
+        self.assertIn("1 times what kinovazed.beat.values speaks of: ", done.stdout)
         found = json.loads(self.run_armjig("replay", other, "--target", "emulated:", "--json",
                                            code=1).stdout)
         self.assertEqual((len(found["differences"]), found["fields"]), (1, {"state": 1}))
+        self.assertEqual(found["requirements"], {"kinovazed.beat.values": 1})
 
     def test_what_the_host_sends_reaches_the_device(self):
         file = self.record("morap")
@@ -223,6 +225,8 @@ class Replay(unittest.TestCase):
     def test_what_moves_an_arm_is_asked_for_before_the_first_byte(self):
         place = self.emulate("parol6", "--pty", "--capture", self.folder / "got.jsonl")
         target = place if place.startswith("pty:") else f"pty:{place}"
+        done = self.run_armjig("replay", JOG, "--target", "teleport:", code=2)
+        self.assertIn("this is no target", done.stderr)
         done = self.run_armjig("replay", JOG, "--target", target, code=3)
         self.assertIn("nothing was sent: this recording needs --allow ", done.stderr)
         self.assertIn("move", done.stderr)

@@ -20,6 +20,12 @@ target_link_libraries(sessions_soak PRIVATE armjig_replay armjig_sessions Thread
 add_test(NAME soak.sessions COMMAND sessions_soak)
 set_tests_properties(soak.sessions PROPERTIES LABELS soak TIMEOUT 86400)
 
+# A minute: a thousand places of each device's recordings, and a thousand answers, are changed.
+add_executable(alterations_soak alterations_soak.cpp)
+target_link_libraries(alterations_soak PRIVATE armjig_replay armjig_harness fmt::fmt armjig_flags)
+add_test(NAME soak.alterations COMMAND alterations_soak ${PROJECT_SOURCE_DIR}/captures)
+set_tests_properties(soak.alterations PROPERTIES LABELS soak TIMEOUT 3600)
+
 # Half a minute: what measuring costs, beside a bare echo.
 add_executable(latency_soak latency_soak.cpp)
 target_link_libraries(latency_soak PRIVATE integration_support fmt::fmt)

@@ -209,6 +209,28 @@ TEST(RecordingDiff, ComparesTimesWithinTheirTolerance) {
   EXPECT_THAT(diff(before, after, rules), IsEmpty());
 }
 
+TEST(RecordingDiff, ComparesWhenThePartsOfAMessageCame) {
+  const CaptureLink server{"kinovazed", "kinovazed", LinkKind::kSession};
+  const auto talk = [&server](Duration first, const char* words) {
+    const std::string_view beginning{words};
+    const std::string_view rest{"0:0:0\r\n"};
+    RecordedMessages messages{find_dissector};
+    EXPECT_TRUE(messages.add({at(first), &server, {}, 0, std::as_bytes(std::span{beginning}), {}}));
+    EXPECT_TRUE(messages.add({at(1s), &server, {}, 0, std::as_bytes(std::span{rest}), {}}));
+    messages.finish();
+    return messages;
+  };
+  const auto before = talk(100ms, "MoveJoystick:1");
+  EXPECT_THAT(diff(before, talk(100ms, "MoveJoystick:1"), {}), IsEmpty());
+  const auto after = talk(101ms, "MoveJoystick:1");
+  const auto found = diff(before, after, {});
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_THAT(found.front().what, ::testing::ElementsAre("time: 100000 us, 101000 us"));
+  ComparisonRules rules;
+  rules.time_tolerance = 1ms;
+  EXPECT_THAT(diff(before, after, rules), IsEmpty());
+}
+
 TEST(RecordingDiff, GoesOnBehindMoreThanItLooksAheadFor) {
   const std::string many(2000, 'x');
   const std::string others(2000, 'y');

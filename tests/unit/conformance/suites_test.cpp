@@ -64,6 +64,45 @@ TEST(Suites, HaveUniqueNamesAndACaseForEachRequirementOrAReason) {
   }
 }
 
+/// The messages of all of that name, if there are any.
+bool has_aspect(const Dissection& dissection, const Subject& subject) {
+  constexpr std::string_view kOfAll[] = {"message", "time", "note", "bytes"};
+  const bool is_of_all = std::ranges::count(kOfAll, subject.aspect) > 0;
+  return std::ranges::any_of(dissection.messages, [&](const MessageKind& kind) {
+    const bool is_it = subject.message.empty() || kind.name == subject.message;
+    return is_it && (is_of_all || std::ranges::any_of(kind.fields, [&](const Field& field) {
+                       return field.name == subject.aspect ||
+                              field.name.starts_with(std::string{subject.aspect} + '.');
+                     }));
+  });
+}
+
+TEST(Suites, SpeakOfMessagesAndFieldsThatThereAre) {
+  for (const auto& device : cli::shipped_devices()) {
+    const auto suite = device.suite();
+    if (device.name != "demo") EXPECT_FALSE(suite.subjects.empty()) << device.name;
+    for (const auto& subject : suite.subjects) {
+      EXPECT_NE(find_requirement(suite, subject.requirement), nullptr) << subject.requirement;
+      EXPECT_TRUE(has_aspect(device.dissection(), subject))
+          << device.name << ": " << subject.message << ' ' << subject.aspect;
+    }
+  }
+}
+
+TEST(Suites, KnowTheRequirementThatSpeaksOfAField) {
+  const auto suite = parol6_suite().suite;
+  const auto id_of = [&](std::string_view message, std::string_view aspect) {
+    const auto* const found = find_requirement_about(suite, message, aspect);
+    return found == nullptr ? std::string_view{} : found->id;
+  };
+  EXPECT_EQ(id_of("telemetry", "timing"), "parol6.telemetry.timing");
+  EXPECT_EQ(id_of("telemetry", "position.j3"), "parol6.telemetry.position-own-joint");
+  EXPECT_EQ(id_of("telemetry", "gripper.current"), "parol6.gripper.latest");
+  EXPECT_EQ(id_of("telemetry", "gripper.id"), "parol6.telemetry.gripper-id");
+  EXPECT_EQ(id_of("telemetry", "iodine"), "");
+  EXPECT_EQ(id_of("command", "position.j3"), "");
+}
+
 TEST(Suites, SayForDifferencesWhatTheOtherProfileHasInstead) {
   for (const auto& [suite, mutants, open] : test::all_suites()) {
     for (const auto& chapter : suite.chapters) {

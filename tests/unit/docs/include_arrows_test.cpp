@@ -94,6 +94,7 @@ const Inner kInner[] = {
     {"harness/rig/(\\w+)_judge\\..*", "::rig"},
     {"emulators/(demo|kinovazed|morap|parol6)/.*", "::emulation"},
     {"emulators/replay/(demo|kinovazed|morap|parol6)(_\\w+)?\\..*", "::replay"},
+    {"emulators/shadow/(kinovazed|morap|parol6)_figures\\..*", "::shadow"},
     {"emulators/sessions/(kinovazed|morap|parol6)\\..*", "::sessions"},
     {"harness/console/(\\w+)/.*", "::console"},
     {"harness/latency/(kinovazed|morap|parol6)_(?:probe|follower)\\..*", "::latency"},

@@ -52,7 +52,9 @@ TEST(Target, AnOptionMayBeEmptyButNotNameless) {
 
 TEST(Target, WhatIsNoneIsAnsweredWithAllForms) {
   for (const auto* text : {"", "nonsense", "/dev/ttyACM0", "rs232:/dev/ttyS0", ":", "PTY:/dev/x"}) {
-    const auto found = problem_of(text);
+    const auto parsed = parse_target(text);
+    ASSERT_FALSE(parsed) << text;
+    const auto& found = parsed.error();
     EXPECT_EQ(found.code, ErrorCode::kBadTarget) << text;
     for (const auto* form : {"emulated:", "serial:", "usb:", "pty:", "tcp:"}) {
       EXPECT_THAT(found.hint, HasSubstr(form)) << text;

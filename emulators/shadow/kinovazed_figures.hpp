@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "emulators/shadow/fit.hpp"
+
+namespace armjig::kinovazed::shadow {
+
+/// What differs from one of them to the next, in the order in which it is told.
+[[nodiscard]] std::span<const FitFigure> figures() noexcept;
+
+}  // namespace armjig::kinovazed::shadow
