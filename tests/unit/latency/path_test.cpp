@@ -100,7 +100,7 @@ struct PathOnEnd {
   std::unique_ptr<Path> path = path_on(*port, line);
 };
 
-constexpr std::array kQuery{std::byte{0xA5}, std::byte{'q'}, std::byte{0x8E}};
+constexpr std::array kDemoQuery{std::byte{0xA5}, std::byte{'q'}, std::byte{0x8E}};
 
 TEST(PathOnAFile, SendsNothingThatTheGuardHasNotAdmitted) {
   const PathOnEnd end{test::make_socket_ends()};
@@ -115,9 +115,9 @@ TEST(PathOnAFile, SendsNothingThatTheGuardHasNotAdmitted) {
 TEST(PathOnAFile, TellsWhenTheKernelHandedARequestToATcpLink) {
   const PathOnEnd end{test::make_tcp_ends()};
   for (int i = 0; i < 3; ++i) {
-    ASSERT_TRUE(end.path->announce(kQuery));
+    ASSERT_TRUE(end.path->announce(kDemoQuery));
     const auto before = end.path->now();
-    const auto left = end.path->time_send(kQuery);
+    const auto left = end.path->time_send(kDemoQuery);
     ASSERT_TRUE(left);
     ASSERT_TRUE(*left) << "no stamp";
     EXPECT_GE(**left, Duration{});
@@ -130,8 +130,8 @@ TEST(PathOnAFile, TellsWhenTheKernelHandedARequestToATcpLink) {
 
 TEST(PathOnAFile, DoesNotKnowWhenSomethingLeavesATerminal) {
   const PathOnEnd end{test::make_terminal_ends()};
-  ASSERT_TRUE(end.path->announce(kQuery));
-  EXPECT_FALSE(end.path->time_send(kQuery).value());
+  ASSERT_TRUE(end.path->announce(kDemoQuery));
+  EXPECT_FALSE(end.path->time_send(kDemoQuery).value());
 }
 
 class MeasuredPath : public testing::TestWithParam<test::LinkEnds (*)()> {};
