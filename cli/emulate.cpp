@@ -2,7 +2,9 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/capture_options.hpp"
 #include "cli/checks.hpp"
@@ -24,6 +26,11 @@ constexpr auto kEmulateHelp =
     "  armjig emulate DEVICE --link /tmp/arm        the same, under a name that stays\n"
     "  armjig emulate DEVICE --tcp 4000             as a byte stream on TCP, this machine only\n"
     "  armjig emulate DEVICE --rfc2217 4001         as a serial port over Telnet (RFC 2217)\n"
+    "  armjig emulate DEVICE --usb /tmp/usb.sock    as a USB device for a virtual machine "
+    "(usbredir)\n"
+    "  armjig emulate DEVICE --usbip 3240           as a USB device for 'usbip attach', this "
+    "machine\n"
+    "                                               only; a bus is behind an I2C adapter on USB\n"
     "  armjig emulate DEVICE --tcp 0 --pty --json   both, any free port, for scripts\n"
     "  armjig emulate DEVICE --set fault=NAME       a faulty one; 'conformance mutants' has names\n"
     "  armjig emulate DEVICE --check                tells what the client program does wrong\n"
@@ -33,7 +40,8 @@ constexpr auto kEmulateHelp =
     "them.\n"
     "\n"
     "Each line on standard output names a place where the device listens, in the form that\n"
-    "--target takes (but rfc2217:, which is for other programs). Clients may come and go. Ctrl-C "
+    "--target takes (but usbredir: and usbip:, which are for other programs). Clients may come and "
+    "go. Ctrl-C "
     "(or SIGTERM) ends it, with exit code 0:\n"
     "that is how a server ends. With --check what the program does wrong is said at once on\n"
     "standard error, and at the end as a report on standard output; findings exit with 1.";
@@ -47,6 +55,8 @@ struct EmulateOptions {
   TcpOptions tcp;
   bool wants_rfc2217 = false;
   std::uint16_t rfc2217_port = 0;
+  std::string usb_socket;
+  std::optional<std::uint16_t> usbip_port;
   int bus = 1;
   double speed = 1;
   bool wants_json = false;
@@ -56,11 +66,21 @@ struct EmulateOptions {
   std::string colour;
 };
 
+/// The places where a USB device is wanted.
+std::vector<UsbOptions> usb_of(const EmulateOptions& options, const usb::Identity& identity) {
+  std::vector<UsbOptions> all;
+  if (!options.usb_socket.empty()) all.push_back({identity, UsbredirSocket{options.usb_socket}});
+  if (options.usbip_port) all.push_back({identity, UsbipPort{*options.usbip_port}});
+  return all;
+}
+
 // How a device is served depends on its kind of port.
 
-Outcome<HostOptions> how_to_serve(const OnStream& /*kind*/, const EmulateOptions& options) {
+Outcome<HostOptions> how_to_serve(const OnStream& kind, const EmulateOptions& options,
+                                  const Device& device) {
   auto host = server_options();
-  const bool is_elsewhere = options.wants_tcp || options.wants_rfc2217;
+  host.usb = usb_of(options, usb_identity(device, kind.usb));
+  const bool is_elsewhere = options.wants_tcp || options.wants_rfc2217 || !host.usb.empty();
   if (options.wants_pty || !options.pty.link.empty() || !is_elsewhere) host.pty = options.pty;
   if (options.wants_tcp) host.tcp = options.tcp;
   if (options.wants_rfc2217) {
@@ -71,11 +91,13 @@ Outcome<HostOptions> how_to_serve(const OnStream& /*kind*/, const EmulateOptions
   return host;
 }
 
-Outcome<HostOptions> how_to_serve(const OnServer& kind, const EmulateOptions& options) {
-  if (options.wants_pty || !options.pty.link.empty() || options.wants_rfc2217) {
+Outcome<HostOptions> how_to_serve(const OnServer& kind, const EmulateOptions& options,
+                                  const Device& /*device*/) {
+  if (options.wants_pty || !options.pty.link.empty() || options.wants_rfc2217 ||
+      !usb_of(options, {}).empty()) {
     return problem(ErrorCode::kUnsupported, options.device,
-                   "it is a TCP server and has no pseudo-terminal or serial port; leave out --pty, "
-                   "--link, --rfc2217");
+                   "it is a TCP server and has no pseudo-terminal, serial port or USB; leave out "
+                   "--pty, --link, --rfc2217, --usb, --usbip");
   }
   auto host = server_options();
   host.tcp = options.tcp;
@@ -84,14 +106,18 @@ Outcome<HostOptions> how_to_serve(const OnServer& kind, const EmulateOptions& op
   return host;
 }
 
-Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const EmulateOptions& options) {
+Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const EmulateOptions& options,
+                                  const Device& device) {
   if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp ||
       options.wants_rfc2217 || options.speed != 1) {
-    return problem(
-        ErrorCode::kUnsupported, options.device,
-        "a bus takes --set, --bus, --json and --check, what --capture needs, and no other option");
+    return problem(ErrorCode::kUnsupported, options.device,
+                   "a bus takes --set, --bus, --usb, --usbip, --json and --check, what --capture "
+                   "needs, and no "
+                   "other option");
   }
-  return HostOptions{};
+  auto host = server_options();
+  host.usb = usb_of(options, usb_identity(device, std::nullopt));
+  return host;
 }
 
 Exit emulate(Devices devices, const EmulateOptions& options) {
@@ -116,7 +142,7 @@ Exit emulate(Devices devices, const EmulateOptions& options) {
         if (!emulated) return tl::unexpected{emulated.error()};
         auto hosted = capture->watch(*std::move(emulated));
         if (*check) hosted = (*check)->watch(std::move(hosted));
-        auto how = how_to_serve(kind, options);
+        auto how = how_to_serve(kind, options, device);
         if (!how) return tl::unexpected{how.error()};
         return serve(std::move(hosted),
                      {options.device, *std::move(how), options.bus, options.wants_json});
@@ -149,6 +175,15 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
                    ->add_option("--bind", options->tcp.address,
                                 "address for --tcp and --rfc2217 (default: 127.0.0.1)")
                    ->type_name("ADDRESS");
+  command
+      ->add_option("--usb", options->usb_socket,
+                   "as a USB device for clients of usbredir, such as QEMU, on this UNIX socket")
+      ->type_name("SOCKET");
+  command
+      ->add_option("--usbip", options->usbip_port,
+                   "as a USB device for 'usbip attach' on this port of 127.0.0.1; 0: any free one")
+      ->type_name("PORT")
+      ->transform(whole(0, 65535));
   command
       ->add_option("--speed", options->speed,
                    "device time over wall time, 0.001 to 10000 (default: 1)")

@@ -110,6 +110,16 @@ HostOptions server_options() {
   return host;
 }
 
+usb::Identity usb_identity(const Device& device, std::optional<UsbId> numbers) {
+  constexpr UsbId kForTrials{0x1209, 0x0001};
+  const auto id = numbers.value_or(kForTrials);
+  return {.vendor = id.vendor,
+          .product = id.product,
+          .manufacturer = "armjig",
+          .product_name = std::string{device.title},
+          .serial_number = fmt::format("{}-emulated", device.name)};
+}
+
 Outcome<Serving> parse_listen(const std::string& listen, const Device& device) {
   constexpr int kLastBus = 255;
   Serving serving{.device = std::string{device.name}, .how = server_options()};
@@ -142,13 +152,14 @@ Outcome<Serving> parse_listen(const std::string& listen, const Device& device) {
 }
 
 Outcome<void> serve(AnyHosted hosted, const Serving& serving) {
-  if (auto* const bus = std::get_if<std::unique_ptr<HostedBus>>(&hosted)) {
+  auto* const bus = std::get_if<std::unique_ptr<HostedBus>>(&hosted);
+  if (bus != nullptr && serving.how.usb.empty()) {
     return serve_bus(std::move(*bus), serving);
   }
   const bool takes_inputs = has_standard_input();
-  const auto inputs = std::visit([](const auto& device) { return device->inputs(); }, hosted);
   auto host = Host::open(std::move(hosted), serving.how);
   if (!host) return tl::unexpected{host.error()};
+  const auto inputs = host->inputs();
   announce(serving, host->targets());
   {
     std::optional<DeviceInputs> by_hand;

@@ -18,7 +18,7 @@ namespace armjig::cli {
 /// Where and how a device is served.
 struct Serving {
   std::string device;
-  HostOptions how;  ///< not of a bus
+  HostOptions how;  ///< of a bus: its USB places; it has a device node if there is none
   int bus = 1;      ///< the N of /dev/i2c-N
   bool wants_json = false;
   bool is_quiet = false;  ///< no statistics at the end
@@ -26,6 +26,10 @@ struct Serving {
 
 /// With signals and a log, as servers have them.
 [[nodiscard]] HostOptions server_options();
+
+/// What an emulated device is called on USB: by the numbers of its entry or, if it has none, by
+/// those that pid.codes keeps for trials.
+[[nodiscard]] usb::Identity usb_identity(const Device& device, std::optional<UsbId> numbers);
 
 /// Where `--listen` says: `pty:[PATH]`, `tcp:[HOST:]PORT`, `i2c:N`. Problems: `kBadValue`, also for
 /// a place that is not for such a device.

@@ -97,7 +97,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
        "libarmjig-embedded-dev (= ${PROJECT_VERSION})" libedit-dev libpcap-dev
        libpugixml-dev libserialport-dev libtins-dev libtomlplusplus-dev libumockdev-dev liburdfdom-dev libusb-1.0-0-dev
-       zlib1g-dev)
+       libusbredirparser-dev zlib1g-dev)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "Static libraries and headers of all that the armjig program is
 made of, for programs that put devices of their own on the jig.")
 set(CPACK_DEBIAN_EMBEDDED_PACKAGE_NAME libarmjig-embedded-dev)

@@ -81,7 +81,8 @@ class Host::LoopOnAsio final : public Loop {
 
   void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell) {
     boost::asio::post(context_, [this, name = std::move(name), value, tell = std::move(tell)] {
-      tell(device_.set_input(catch_up(), name, value));
+      const auto time = catch_up();
+      tell(front_->set_input(name, value) || device_.set_input(time, name, value));
       pump();
     });
   }
@@ -100,6 +101,12 @@ class Host::LoopOnAsio final : public Loop {
   }
 
   [[nodiscard]] std::vector<std::string> targets() const { return front_->targets(); }
+  [[nodiscard]] std::vector<DeviceInput> inputs() const {
+    auto all = front_->inputs();
+    const auto of_device = device_.inputs();
+    all.insert(all.end(), of_device.begin(), of_device.end());
+    return all;
+  }
   [[nodiscard]] HostStatistics statistics() const {
     return {.links = front_->statistics(), .lost = clock_.lost()};
   }
@@ -123,6 +130,12 @@ class Host::LoopOnAsio final : public Loop {
       }
     }
     return reached_;
+  }
+
+  [[nodiscard]] Instant present() const override { return clock_.virtual_time(Wall::now()); }
+
+  [[nodiscard]] Wall::time_point wall_time(Instant time) const override {
+    return clock_.wall_time(time, Wall::now());
   }
 
   void reach(Instant time) override { reached_ = std::max(reached_, time); }
@@ -206,6 +219,7 @@ Outcome<Host> Host::open(AnyHosted device, HostOptions options) {
 }
 
 std::vector<std::string> Host::targets() const { return loop_->targets(); }
+std::vector<DeviceInput> Host::inputs() const { return loop_->inputs(); }
 void Host::run() { loop_->run(); }
 void Host::stop() { loop_->stop(); }
 void Host::set_input(std::string name, std::int64_t value,

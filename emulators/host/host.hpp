@@ -5,23 +5,45 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "emulators/host/client_link.hpp"
 #include "emulators/memory/hosted.hpp"
+#include "emulators/usb/description.hpp"
 #include "harness/core/error.hpp"
 #include "harness/link/bus_port.hpp"
 
 namespace armjig {
 
+/// A UNIX socket for clients of usbredir, such as QEMU.
+struct UsbredirSocket {
+  std::string path;
+};
+/// A port of 127.0.0.1 for clients of USB/IP, such as `usbip attach`; 0: any that is free.
+struct UsbipPort {
+  std::uint16_t number{};
+};
+using UsbSocket = std::variant<UsbredirSocket, UsbipPort>;
+
+/// A USB device that is exported: a stream is a serial port (CDC-ACM), a bus is behind an adapter
+/// of the i2c-tiny-usb family, which has numbers of its own.
+struct UsbOptions {
+  usb::Identity identity;
+  UsbSocket place;
+};
+
 /// Where and how a device is hosted. A stream has at least one link, a server TCP and nothing else,
-/// a bus none (`Host::with_bus`).
+/// a bus USB or nothing (`Host::with_bus`).
 struct HostOptions {
   enum class OnSignal : std::uint8_t { kNothing, kStop };
 
   std::optional<PtyOptions> pty;
   std::optional<TcpOptions> tcp;
   std::optional<TcpOptions> rfc2217;  ///< of a stream, a serial port over Telnet
+  std::vector<UsbOptions>
+      usb{};         ///< each is a device of its own; the inputs at their cables do to all
   double speed = 1;  ///< virtual over wall time, `PacedClock::kSlowest` to `kFastest`
   OnSignal on_signal = OnSignal::kNothing;  ///< `kStop`: SIGINT and SIGTERM end `run`
   std::function<void(std::string_view line)> log = [](std::string_view /*line*/) {};
@@ -63,6 +85,9 @@ class Host {
 
   /// Ends `run`, now or as soon as it begins. May be called from any thread.
   void stop();
+
+  /// What `set_input` knows: the inputs of the device, and those of its cables.
+  [[nodiscard]] std::vector<DeviceInput> inputs() const;
 
   /// Does something beside the device while `run` runs, and tells there whether there is an input
   /// of that name which takes the value. May be called from any thread.

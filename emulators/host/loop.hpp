@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "emulators/host/host.hpp"
+#include "emulators/host/usb_export.hpp"
 #include "emulators/memory/hosted.hpp"
 #include "harness/core/error.hpp"
 #include "harness/link/bus_port.hpp"
@@ -28,6 +31,10 @@ class Loop {
   /// Brings the device to the present, unless that takes too long: then time is lost. The device's
   /// time.
   virtual Instant catch_up() = 0;
+  /// The device's time without bringing it there.
+  [[nodiscard]] virtual Instant present() const = 0;
+  /// When the device's time will be that, by the wall clock.
+  [[nodiscard]] virtual std::chrono::steady_clock::time_point wall_time(Instant time) const = 0;
   /// The device was brought that far by others.
   virtual void reach(Instant time) = 0;
   /// Lets the device do what is due, has it forwarded, and sees to it that this happens again.
@@ -50,11 +57,20 @@ class Front {
   [[nodiscard]] virtual Outcome<void> listen(const HostOptions& options) = 0;
   /// Hands over what the device has sent.
   virtual void forward() = 0;
+  /// What a hand can do to its links.
+  [[nodiscard]] virtual std::vector<DeviceInput> inputs() const { return {}; }
+  /// False: there is no such input, or it does not take the value.
+  [[nodiscard]] virtual bool set_input(std::string_view /*name*/, std::int64_t /*value*/) {
+    return false;
+  }
   [[nodiscard]] virtual std::vector<std::string> targets() const = 0;
   [[nodiscard]] virtual LinkStatistics statistics() const = 0;
   /// The bus, for one that is one.
   [[nodiscard]] virtual BusPort* bus() noexcept { return nullptr; }
 };
+
+/// How a front exports USB devices. `on_turn` is called after one was told something.
+[[nodiscard]] UsbExport::Events usb_events(Loop& loop, std::function<void()> on_turn);
 
 // The loop and the device outlive them.
 [[nodiscard]] std::unique_ptr<Front> make_front(Loop& loop, HostedStream& device);

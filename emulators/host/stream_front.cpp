@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "emulators/host/loop.hpp"
+#include "emulators/host/usb_link.hpp"
 
 namespace armjig {
 namespace {
@@ -24,8 +25,15 @@ class StreamFront final : public Front {
       auto added = add(open_tcp_link(loop_.context(), **place, events()));
       if (!added) return added;
     }
+    for (const auto& place : options.usb) {
+      auto link = open_usb_link(loop_, place, events());
+      if (!link) return tl::unexpected{link.error()};
+      hand_.add([at = link->get()](Cable cable) { at->set_cable(cable); });
+      links_.push_back(*std::move(link));
+    }
     if (links_.empty()) {
-      return problem(ErrorCode::kBadValue, "host", "a pseudo-terminal or a TCP port is needed");
+      return problem(ErrorCode::kBadValue, "host",
+                     "a pseudo-terminal, a TCP port or a USB socket is needed");
     }
     // On its only link, a device that speaks first is heard.
     if (links_.size() == 1) listener_ = links_.front().get();
@@ -38,6 +46,11 @@ class StreamFront final : public Front {
     }
     device_.clear_sent();
     for (const auto& link : links_) link->read_on();
+  }
+
+  [[nodiscard]] std::vector<DeviceInput> inputs() const override { return hand_.inputs(); }
+  [[nodiscard]] bool set_input(std::string_view name, std::int64_t value) override {
+    return hand_.set_input(name, value);
   }
 
   [[nodiscard]] std::vector<std::string> targets() const override {
@@ -75,6 +88,7 @@ class StreamFront final : public Front {
   Loop& loop_;
   HostedStream& device_;
   std::vector<std::unique_ptr<ClientLink>> links_;
+  CableHand hand_;
   ClientLink* listener_ = nullptr;  ///< who gets answers: one of `links_`
 };
 

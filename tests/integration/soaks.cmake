@@ -69,3 +69,9 @@ add_test(NAME soak.trace
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/trace_soak.py $<TARGET_FILE:armjig>
                  ${PROJECT_SOURCE_DIR}/captures/parol6/random_30s_a.jsonl)
 set_tests_properties(soak.trace PROPERTIES LABELS soak TIMEOUT 7200)
+
+# A cable that is pulled out 200 times, in a guest with a kernel of its own. Needs what
+# scripts/bootstrap --dev installs.
+add_test(NAME soak.unplug COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
+                                  unplug 200)
+set_tests_properties(soak.unplug PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)

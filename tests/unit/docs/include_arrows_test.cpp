@@ -67,7 +67,9 @@ constexpr Room kRooms[] = {
      "harness/link harness/rig harness/report emulators/sessions emulators/memory "
      "emulators/replay"},
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
-    {"emulators/host", "harness/core harness/wire harness/link harness/timing emulators/memory"},
+    {"emulators/usb", "harness/core harness/link"},
+    {"emulators/host",
+     "harness/core harness/wire harness/link harness/timing emulators/memory emulators/usb"},
     {"emulators/shadow",
      "harness/core harness/wire harness/capture harness/compare emulators/memory"},
     {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},

@@ -153,6 +153,7 @@ const std::vector<Step>& steps() {
         {"emulators/lab/i2c_adapter.cpp", "the other end: a virtual bus for other programs"},
         {"emulators/lab/virtual_i2c.cpp", "the other end: a virtual bus for other programs"},
         {"emulators/memory/hosted.hpp", "to an emulated bus"},
+        {"emulators/usb/tiny_usb.cpp", "the other end: an adapter in front of an emulated bus"},
         {"emulators/i2c/bus.cpp", "to the emulated devices on it"},
         {"emulators/i2c/bus.hpp", "to an emulated device"},
         {"emulators/host/relay.cpp", "passes on what a program sends: a cable without a guard"},
