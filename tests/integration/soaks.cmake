@@ -26,6 +26,12 @@ target_link_libraries(alterations_soak PRIVATE armjig_replay armjig_harness fmt:
 add_test(NAME soak.alterations COMMAND alterations_soak ${PROJECT_SOURCE_DIR}/captures)
 set_tests_properties(soak.alterations PROPERTIES LABELS soak TIMEOUT 3600)
 
+# Some ten minutes: every recording to a hosted emulated device, in real time over real links.
+add_executable(hosted_replay_soak hosted_replay_soak.cpp)
+target_link_libraries(hosted_replay_soak PRIVATE integration_support fmt::fmt)
+add_test(NAME soak.hosted_replay COMMAND hosted_replay_soak)
+set_tests_properties(soak.hosted_replay PROPERTIES LABELS soak TIMEOUT 7200 RUN_SERIAL TRUE)
+
 # Half a minute: what measuring costs, beside a bare echo.
 add_executable(latency_soak latency_soak.cpp)
 target_link_libraries(latency_soak PRIVATE integration_support fmt::fmt)
