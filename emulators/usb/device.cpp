@@ -41,7 +41,7 @@ std::uint8_t low_byte(std::uint16_t word) { return static_cast<std::uint8_t>(wor
 }  // namespace
 
 void Device::submit(Instant time, Transfer transfer) {
-  if ((transfer.endpoint & ~kIn) == 0) return control(time, std::move(transfer));
+  if ((transfer.endpoint & ~kIn) == 0) return control(time, transfer);
   const auto* const endpoint = find_endpoint(description(), transfer.endpoint);
   if (endpoint == nullptr || configuration_ == 0 || !has_room_for(transfer)) {
     return end(transfer, Status::kInvalid);
@@ -171,7 +171,7 @@ bool Device::step_in(const Endpoint& endpoint, Queue& queue) {
 
 // Requests.
 
-void Device::control(Instant time, Transfer transfer) {
+void Device::control(Instant time, const Transfer& transfer) {
   const bool is_read = is_in(transfer.setup.type);
   const bool is_well_formed = is_read ? is_in(transfer.endpoint) || transfer.setup.length == 0
                                       : transfer.bytes.size() == transfer.setup.length;

@@ -84,7 +84,7 @@ class Device {
   };
   using Queue = std::deque<Waiting>;
 
-  void control(Instant time, Transfer transfer);
+  void control(Instant time, const Transfer& transfer);
   [[nodiscard]] std::optional<ControlReply> answer(Instant time, const Transfer& transfer);
   [[nodiscard]] std::optional<ControlReply> standard(const Setup& setup);
   [[nodiscard]] std::optional<ControlReply> descriptor(const Setup& setup) const;

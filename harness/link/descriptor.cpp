@@ -96,8 +96,10 @@ Result<void> write_all(const Descriptor& terminal, Bytes bytes, const Stopwatch&
 Result<Descriptor> open_terminal(const std::string& path) noexcept {
   Descriptor terminal{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
   const bool is_folder = !terminal.is_open() && errno == EISDIR;
-  if (is_folder || (terminal.is_open() && ::isatty(terminal.value()) == 0)) {
-    return fail(ErrorCode::kBadTarget);
+  if (is_folder) return fail(ErrorCode::kBadTarget);
+  if (terminal.is_open() && ::isatty(terminal.value()) == 0) {
+    // One that is pulled out right now is hung up.
+    return fail(errno == EIO ? ErrorCode::kDisconnected : ErrorCode::kBadTarget);
   }
   if (!terminal.is_open()) return tl::unexpected{error_from_errno(errno)};
   if (::flock(terminal.value(), LOCK_EX | LOCK_NB) == 0) return terminal;

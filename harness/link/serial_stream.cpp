@@ -99,7 +99,8 @@ tl::unexpected<Problem> problem_of_port(const std::string& path, const Error& er
       path, error,
       {.absent = "is the board plugged in and switched on? 'armjig devices' lists what is",
        .not_allowed = "serial ports belong to the group dialout: run 'sudo adduser $USER dialout' "
-                      "and log in again; 'armjig doctor' tells more",
+                      "and log in again, or let 60-armjig.rules do it, which 'armjig doctor "
+                      "--udev-rules' prints",
        .busy = "close that program, 'fuser' names it; if an armjig was killed just now, wait a "
                "second until its arm is stopped",
        .gone = "was it unplugged just now?",
@@ -205,7 +206,9 @@ Outcome<std::unique_ptr<StreamPort>> open_serial(const SerialAddress& address) {
   }
   sp_port* named = nullptr;
   if (::sp_get_port_by_name(kernel_name(path).c_str(), &named) != SP_OK) {
-    return problem_of_port(path, {ErrorCode::kBadTarget});
+    // The library asks the system, which has forgotten a port that is pulled out right now.
+    const bool is_there = ::isatty(port->value()) != 0;
+    return problem_of_port(path, {is_there ? ErrorCode::kBadTarget : ErrorCode::kDisconnected});
   }
   const PortHandle handle{named};
   if (const auto error_number = set_up(named, address.line)) {

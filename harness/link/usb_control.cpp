@@ -48,7 +48,8 @@ Error error_from_libusb(int code) noexcept {
 auto problem_from_libusb(int code, const std::string& where) {
   const auto error = error_from_libusb(code);
   const auto* const hint =
-      error.code == ErrorCode::kNoPermission ? "a udev rule has to let you use it, or run as root"
+      error.code == ErrorCode::kNoPermission ? "the udev rule 60-armjig.rules has to let you use "
+                                               "it; 'armjig doctor --udev-rules' prints it"
       : error.code == ErrorCode::kBusy
           ? "a kernel driver or another program has it; 'rmmod i2c-tiny-usb' frees it, or use its "
             "bus as i2c:/dev/i2c-N"

@@ -37,6 +37,13 @@ constexpr std::string_view kUdevBoard = R"(
 SUBSYSTEM=="usb", ENV{{DEVTYPE}}=="usb_device", ATTR{{idVendor}}=="{1:04x}", ATTR{{idProduct}}=="{2:04x}", ENV{{ID_MM_DEVICE_IGNORE}}="1"
 SUBSYSTEM=="tty", KERNEL=="ttyACM*", ATTRS{{idVendor}}=="{1:04x}", ATTRS{{idProduct}}=="{2:04x}", ENV{{ID_MM_DEVICE_IGNORE}}="1", TAG+="uaccess", SYMLINK+="armjig/{0}-$attr{{serial}}"
 )";
+/// The family has two pairs of numbers.
+constexpr std::string_view kUdevAdapters = R"(
+# I2C adapters: without a driver (i2c-tiny-usb:), and the bus that the kernel makes of one (i2c:)
+SUBSYSTEM=="usb", ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="0403", ATTR{idProduct}=="c631", TAG+="uaccess"
+SUBSYSTEM=="usb", ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="1c40", ATTR{idProduct}=="0534", TAG+="uaccess"
+SUBSYSTEM=="i2c-dev", ATTR{name}=="i2c-tiny-usb*", TAG+="uaccess"
+)";
 constexpr std::string_view kUdevTail = R"(
 LABEL="armjig_end"
 )";
@@ -278,6 +285,7 @@ std::string udev_rules(std::span<const KnownBoard> boards) {
   for (const auto& board : boards) {
     rules += fmt::format(kUdevBoard, board.device, board.usb.vendor, board.usb.product);
   }
+  rules += kUdevAdapters;
   return rules += kUdevTail;
 }
 

@@ -224,7 +224,7 @@ TEST_F(UsbAdapterBench, SaysThatAUdevRuleIsMissing) {
   const NoPrivileges like_everybody;
   const auto problem = problem_of_opening();
   EXPECT_EQ(problem.code, ErrorCode::kNoPermission);
-  EXPECT_THAT(problem.hint, HasSubstr("udev rule"));
+  EXPECT_THAT(problem.hint, HasSubstr("udev rule 60-armjig.rules"));
 }
 
 TEST_F(UsbAdapterBench, RefusesADeviceThatIsNoSuchAdapter) {

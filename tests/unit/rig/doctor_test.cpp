@@ -219,6 +219,12 @@ TEST(UdevRules, NameEachKnownBoard) {
 TEST(UdevRules, ComeBeforeTheOnesThatGiveAccess) {
   EXPECT_LT(kUdevRulesFile, "73-seat-late.rules");
   EXPECT_THAT(udev_rules(kBoards), HasSubstr("TAG+=\"uaccess\""));
+  // Both pairs of numbers that make_i2c_tiny_usb takes, and the bus of Linux' driver.
+  EXPECT_THAT(udev_rules(kBoards),
+              HasSubstr("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"c631\""));
+  EXPECT_THAT(udev_rules(kBoards),
+              HasSubstr("ATTR{idVendor}==\"1c40\", ATTR{idProduct}==\"0534\""));
+  EXPECT_THAT(udev_rules(kBoards), HasSubstr("ATTR{name}==\"i2c-tiny-usb*\", TAG+=\"uaccess\""));
   EXPECT_THAT(udev_rules(kBoards), HasSubstr("ENV{ID_MM_DEVICE_IGNORE}=\"1\""));
 }
 
