@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/record_judge.hpp"
+
 namespace armjig::cli {
 namespace {
 
@@ -107,24 +109,11 @@ LinkKind link_of() {
 }
 
 /// Leaves out what the guard would refuse, and what follows nothing then.
-template <class Kind>
-auto permit_of(const Kind& kind, const Permissions& granted) {
-  return [make_judge = kind.make_judge, granted](Script& script) {
-    std::map<std::uint32_t, std::unique_ptr<Judge>> judges;
+auto permit_of(RecordJudge::MakeJudge make_judge, const Permissions& granted) {
+  return [make_judge, granted](Script& script) {
+    RecordJudge judge{make_judge};
     std::erase_if(script, [&](const KeptRecord& record) {
-      if (record.kind == LinkKind::kEvents) return false;
-      auto& judge = judges[record.kind == LinkKind::kSession ? record.id : 0];
-      if (!judge) judge = make_judge();
-      judge->set_time(record.time);
-      auto message = record.bytes;
-      if (record.kind == LinkKind::kBus) {
-        const BusAddress address{static_cast<std::uint8_t>(record.id)};
-        message.insert(message.begin(), campaign::is_sent(record)
-                                            ? head_of(write_to(address, {}))
-                                            : head_of(read_from(address, {})));
-      }
-      const auto refusal = judge->judge(Bytes{message}, granted);
-      return refusal && refusal->cause == Refusal::Cause::kRequest;
+      return judge.refusal_of(record, granted).has_value();
     });
   };
 }
@@ -161,7 +150,8 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
         const auto judge = kind.make_judge();
         material.harmless = harmless_script(material.kind, {request.begin(), request.end()},
                                             how.target.is_emulated() ? Messages{} : judge->stop());
-        if (!how.target.is_emulated()) material.permit = permit_of(kind, how.permissions);
+        if (!how.target.is_emulated())
+          material.permit = permit_of(kind.make_judge, how.permissions);
         return material;
       },
       device.port);
