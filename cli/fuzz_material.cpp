@@ -123,6 +123,26 @@ Outcome<Rig<Port>> open_fresh(const Wiring<Port>& wiring, const RigOptions& how)
   return Rig<Port>::open(wiring, how);
 }
 
+/// A target without models.
+template <class Kind>
+auto setup_of(const Device& device, const Kind& kind, const RigOptions& how, const Hand& hand,
+              Duration trailing) {
+  campaign::StageSetup<typename Kind::Port> setup{
+      .make_target = [&device, &kind, how] { return open_fresh(wiring_of(device, kind), how); },
+      .make_model = {},
+      .restart = {},
+      .is_emulated = how.target.is_emulated(),
+      .how = {.touches_of = device.replay.touches_of, .trailing = trailing}};
+  if (how.target.is_emulated()) return setup;
+  if (hand.has("restart")) {
+    setup.restart = [hand] { return hand.set("restart", 1); };
+  }
+  setup.how.by_hand = [hand](std::string_view input, std::int64_t value) {
+    return hand.has(input) && hand.set(input, value);
+  };
+  return setup;
+}
+
 }  // namespace
 
 Outcome<Material> material_of(const Device& device, const RigOptions& how, const RigOptions& model,
@@ -163,17 +183,22 @@ std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions
   return std::visit(
       [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
         using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
-        campaign::StageSetup<Port> setup{
-            .make_target = [&device, &kind,
-                            how] { return open_fresh(wiring_of(device, kind), how); },
-            .make_model = [&device, &kind,
-                           model] { return open_fresh(wiring_of(device, kind), model); },
-            .restart = {},
-            .is_emulated = how.target.is_emulated(),
-            .how = {.touches_of = device.replay.touches_of, .trailing = trailing}};
-        if (hand.has("restart") && !how.target.is_emulated()) {
-          setup.restart = [hand] { return hand.set("restart", 1); };
-        }
+        auto setup = setup_of(device, kind, how, hand, trailing);
+        setup.make_model = [&device, &kind, model] {
+          return open_fresh(wiring_of(device, kind), model);
+        };
+        return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
+      },
+      device.port);
+}
+
+std::unique_ptr<campaign::Stage> stage_alone(const Device& device, const RigOptions& how,
+                                             const Hand& hand, double speed) {
+  return std::visit(
+      [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
+        using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
+        auto setup = setup_of(device, kind, how, hand, {});
+        setup.how.speed = how.target.is_emulated() ? 1 : speed;
         return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
       },
       device.port);

@@ -20,7 +20,6 @@ using test::hex;
 using test::ScriptedCapture;
 using test::text;
 using testing::Contains;
-using testing::Field;
 using testing::HasSubstr;
 
 std::unique_ptr<Probe> echo_of_a_byte() { return generic::make_probe("byte", hex("55"), 1); }
@@ -176,7 +175,8 @@ TEST(RecordingOfABoard, LeavesIntervalsOutThatWrapTheBoardsField) {
     capture.answer(i * 100ms + 1ms, {answer.begin(), answer.end()});
   }
   const auto run = read(capture, parol6::latency::make_listener);
-  EXPECT_THAT(run.figures, testing::Not(Contains(Field(&Figure::name, HasSubstr("clock")))));
+  EXPECT_THAT(run.figures,
+              testing::Not(Contains(testing::Field(&Figure::name, HasSubstr("clock")))));
 }
 
 TEST(RecordingOfABus, AddsTheBitsOfTheReadToItsBeginning) {
