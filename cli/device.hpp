@@ -15,6 +15,7 @@
 #include "conformance/mutation.hpp"
 #include "conformance/program_check.hpp"
 #include "conformance/suite.hpp"
+#include "emulators/campaign/alphabet.hpp"
 #include "emulators/memory/clocked.hpp"
 #include "emulators/memory/hosted.hpp"
 #include "emulators/memory/in_memory.hpp"
@@ -86,6 +87,8 @@ struct FuzzEntry {
   void (*seal)(std::span<std::byte> message){};
   /// In what a live device may differ from its model: rules as of `armjig replay --rules`.
   std::string_view live_rules{};
+  /// The machines that `--learn` learns; empty: none.
+  std::span<const campaign::Learnable> machines{};
 };
 
 /// Adds a subcommand that only this device has.

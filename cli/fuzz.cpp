@@ -14,6 +14,7 @@
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
 #include "cli/diff.hpp"
+#include "cli/fuzz_learn.hpp"
 #include "cli/fuzz_material.hpp"
 #include "cli/hand_options.hpp"
 #include "cli/progress.hpp"
@@ -41,11 +42,14 @@ constexpr auto kFuzzHelp =
     "  armjig fuzz DEVICE --target pty:/tmp/arm --allow all --restart ./restart --out found\n"
     "  armjig fuzz DEVICE --target emulated: --known fuzz/known/DEVICE-defects.toml --cases 1000\n"
     "  armjig fuzz DEVICE --merge board1 board2 --out all\n"
+    "  armjig fuzz DEVICE --target emulated: --learn --draw machine.svg\n"
     "\n"
     "The model is the device of the document, or, with --known, the one that the file describes.\n"
     "Each finding is made as short as it can be, and a recording that 'armjig replay' plays. On a\n"
     "device that is not emulated only what --allow names is sent. Clear the space around the arm\n"
-    "before --allow move,home.\n"
+    "before --allow move,home. With --learn no cases are played: the machine that the device "
+    "shows\n"
+    "is learned by asking, and compared with the documented one.\n"
     "\n"
     "Exit codes: 0 nothing new was found, 1 findings, 2 usage, 3 the target, 4 no case was "
     "played,\n"
@@ -66,6 +70,7 @@ struct FuzzOptions {
   std::optional<double> most_seconds;
   std::optional<double> length;
   bool stops_at_first = false;
+  LearnSettings learning;
   ReportFiles files;
   std::string colour;
 };
@@ -153,7 +158,7 @@ Outcome<ComparisonRules> rules_of(const FuzzRun& run) {
 
 /// What is done at a finding to see it again.
 std::string repeat_of(const FuzzRun& run, const std::optional<Folder>& folder,
-                      const Finding& finding) {
+                      const campaign::Finding& finding) {
   if (!folder) {
     const auto known = run.options.known.empty() ? "" : " --known " + run.options.known;
     const auto model =
@@ -181,7 +186,7 @@ class Account {
                   next_ = std::chrono::steady_clock::now() + std::chrono::seconds{5};
                 },
             .on_finding =
-                [this](const Finding& finding) {
+                [this](const campaign::Finding& finding) {
                   progress_.clear();
                   fmt::print("{} {}\n", finding.known.empty() ? "FINDING" : "KNOWN  ",
                              wording::line(finding.sentence));
@@ -267,8 +272,9 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   const auto done = run_campaign(*stage, *material, options, state, account.listener());
   account.finish(state);
   const bool was_stopped = !done && signals.has_come();
-  auto result = to_report(std::string{run.device.name}, state,
-                          [&](const Finding& finding) { return repeat_of(run, folder, finding); });
+  auto result =
+      to_report(std::string{run.device.name}, state,
+                [&](const campaign::Finding& finding) { return repeat_of(run, folder, finding); });
   result.facts = {{"target", how.target.text},
                   {"model", run.model.target.text},
                   {"seed", fmt::format("{}", run.options.seed)},
@@ -312,16 +318,39 @@ Exit merge(const Device& device, const FuzzOptions& options) {
       return report(written.error());
     }
   }
-  auto result = to_report(std::string{device.name}, all, [&](const Finding& finding) {
+  auto result = to_report(std::string{device.name}, all, [&](const campaign::Finding& finding) {
     return fmt::format("armjig replay {} --target TARGET", paths[name_of(finding)]);
   });
   result.facts = {{"merged", fmt::format("{} campaigns", options.merge.size())}};
   return conclude(options, result, *files);
 }
 
+/// Nothing but `--restart` starts a device again: whoever sets inputs may not know that one.
+Hand hand_for(const HandOptions& options) {
+  auto hand = hand_of(options);
+  if (options.restart.empty()) {
+    hand.has = [has = std::move(hand.has)](std::string_view input) {
+      return input != "restart" && has(input);
+    };
+  }
+  return hand;
+}
+
+Exit learn_machines(const Device& device, const FuzzOptions& options) {
+  const auto how = parse_target_options(options.target);
+  if (!how) return report(how.error());
+  const auto repeat = fmt::format("armjig fuzz {} --target '{}'{}{} --learn --seed {}", device.name,
+                                  options.target.target, to_arguments(options.target),
+                                  to_arguments(options.hands), options.seed);
+  const auto hand = hand_for(options.hands);
+  return learn(
+      {device, *how, hand, options.learning, options.seed, options.files, options.colour, repeat});
+}
+
 Exit fuzz(Devices devices, const FuzzOptions& options) {
   const auto device = find_device(devices, options.device);
   if (!device) return report(device.error());
+  if (options.learning.is_wanted) return learn_machines(**device, options);
   if (!options.merge.empty()) return merge(**device, options);
   const auto run = read_run(**device, options);
   if (!run) return report(run.error());
@@ -349,43 +378,61 @@ void add_fuzz(CLI::App& app, Devices devices, Action& action) {
       ->add_option("--restart", options->hands.restart,
                    "starts the program of a device that is not emulated again")
       ->type_name("COMMAND");
-  command
-      ->add_option("--model", options->model,
-                   "what answers are compared with (default: emulated: as the document promises)")
-      ->type_name("TARGET");
-  command
-      ->add_option("--known", options->known,
-                   "a file of known defects, which are no findings; it says what the model is")
-      ->type_name("FILE");
-  command
-      ->add_option("--rules", options->rules,
-                   "what may differ from the model, as for replay (default: of a live device what "
-                   "depends on its time)")
-      ->type_name("FILE");
+  auto* const hand =
+      command
+          ->add_option(
+              "--hand", options->hands.hand,
+              "sets an input of a device that is not emulated, with --learn: called with its "
+              "name and value")
+          ->type_name("COMMAND");
+  auto* const model =
+      command
+          ->add_option(
+              "--model", options->model,
+              "what answers are compared with (default: emulated: as the document promises)")
+          ->type_name("TARGET");
+  auto* const known =
+      command
+          ->add_option("--known", options->known,
+                       "a file of known defects, which are no findings; it says what the model is")
+          ->type_name("FILE");
+  auto* const rules =
+      command
+          ->add_option("--rules", options->rules,
+                       "what may differ from the model, as for replay (default: of a live device "
+                       "what depends on its time)")
+          ->type_name("FILE");
   command->add_option("--seed", options->seed, "of what is drawn; 1 if not given")
       ->transform(whole(0, std::numeric_limits<std::uint64_t>::max()));
-  command->add_option("--cases", options->cases, "play no more than so many")
-      ->transform(whole(1, std::numeric_limits<std::int64_t>::max()));
-  command->add_option("--max-time", options->most_seconds, "play no longer than that")
-      ->type_name("SECONDS")
-      ->check(number(0.001, 1e9));
-  command
-      ->add_option(
-          "--length", options->length,
-          "the longest case, in the device's time; most have an eighth of that (default: 60 "
-          "emulated, 6 live)")
-      ->type_name("SECONDS")
-      ->check(number(0.001, 3600));
-  command
-      ->add_option("--out", options->out,
-                   "a folder for what is found; a campaign that is in it goes on")
-      ->type_name("FOLDER");
-  command->add_option("--shard", options->shard, "only one part of several, as in 2/4");
-  command
-      ->add_option("--merge", options->merge,
-                   "play nothing, but put together what campaigns left in these folders")
-      ->type_name("FOLDER");
-  command->add_flag("--fail-fast", options->stops_at_first, "end at the first finding");
+  auto* const cases = command->add_option("--cases", options->cases, "play no more than so many");
+  cases->transform(whole(1, std::numeric_limits<std::int64_t>::max()));
+  auto* const most_time =
+      command->add_option("--max-time", options->most_seconds, "play no longer than that")
+          ->type_name("SECONDS")
+          ->check(number(0.001, 1e9));
+  auto* const length =
+      command
+          ->add_option("--length", options->length,
+                       "the longest case, in the device's time; most have an eighth of that "
+                       "(default: 60 emulated, 6 live)")
+          ->type_name("SECONDS")
+          ->check(number(0.001, 3600));
+  auto* const out = command
+                        ->add_option("--out", options->out,
+                                     "a folder for what is found; a campaign that is in it goes on")
+                        ->type_name("FOLDER");
+  auto* const shard =
+      command->add_option("--shard", options->shard, "only one part of several, as in 2/4");
+  auto* const merge =
+      command
+          ->add_option("--merge", options->merge,
+                       "play nothing, but put together what campaigns left in these folders")
+          ->type_name("FOLDER");
+  auto* const first =
+      command->add_flag("--fail-fast", options->stops_at_first, "end at the first finding");
+  add_learn_options(*command, options->learning,
+                    {model, known, rules, cases, most_time, length, out, shard, merge, first});
+  hand->needs("--learn");
   add_report_files(*command, options->files);
   add_colour_option(*command, options->colour);
   when_chosen(*command, action, [options, devices] { return fuzz(devices, *options); });

@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/record_judge.hpp"
+
 namespace armjig::cli {
 namespace {
 
@@ -107,24 +109,11 @@ LinkKind link_of() {
 }
 
 /// Leaves out what the guard would refuse, and what follows nothing then.
-template <class Kind>
-auto permit_of(const Kind& kind, const Permissions& granted) {
-  return [make_judge = kind.make_judge, granted](Script& script) {
-    std::map<std::uint32_t, std::unique_ptr<Judge>> judges;
+auto permit_of(RecordJudge::MakeJudge make_judge, const Permissions& granted) {
+  return [make_judge, granted](Script& script) {
+    RecordJudge judge{make_judge};
     std::erase_if(script, [&](const KeptRecord& record) {
-      if (record.kind == LinkKind::kEvents) return false;
-      auto& judge = judges[record.kind == LinkKind::kSession ? record.id : 0];
-      if (!judge) judge = make_judge();
-      judge->set_time(record.time);
-      auto message = record.bytes;
-      if (record.kind == LinkKind::kBus) {
-        const BusAddress address{static_cast<std::uint8_t>(record.id)};
-        message.insert(message.begin(), campaign::is_sent(record)
-                                            ? head_of(write_to(address, {}))
-                                            : head_of(read_from(address, {})));
-      }
-      const auto refusal = judge->judge(Bytes{message}, granted);
-      return refusal && refusal->cause == Refusal::Cause::kRequest;
+      return judge.refusal_of(record, granted).has_value();
     });
   };
 }
@@ -132,6 +121,26 @@ auto permit_of(const Kind& kind, const Permissions& granted) {
 template <class Port>
 Outcome<Rig<Port>> open_fresh(const Wiring<Port>& wiring, const RigOptions& how) {
   return Rig<Port>::open(wiring, how);
+}
+
+/// A target without models.
+template <class Kind>
+auto setup_of(const Device& device, const Kind& kind, const RigOptions& how, const Hand& hand,
+              Duration trailing) {
+  campaign::StageSetup<typename Kind::Port> setup{
+      .make_target = [&device, &kind, how] { return open_fresh(wiring_of(device, kind), how); },
+      .make_model = {},
+      .restart = {},
+      .is_emulated = how.target.is_emulated(),
+      .how = {.touches_of = device.replay.touches_of, .trailing = trailing}};
+  if (how.target.is_emulated()) return setup;
+  if (hand.has("restart")) {
+    setup.restart = [hand] { return hand.set("restart", 1); };
+  }
+  setup.how.by_hand = [hand](std::string_view input, std::int64_t value) {
+    return hand.has(input) && hand.set(input, value);
+  };
+  return setup;
 }
 
 }  // namespace
@@ -161,7 +170,8 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
         const auto judge = kind.make_judge();
         material.harmless = harmless_script(material.kind, {request.begin(), request.end()},
                                             how.target.is_emulated() ? Messages{} : judge->stop());
-        if (!how.target.is_emulated()) material.permit = permit_of(kind, how.permissions);
+        if (!how.target.is_emulated())
+          material.permit = permit_of(kind.make_judge, how.permissions);
         return material;
       },
       device.port);
@@ -173,17 +183,22 @@ std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions
   return std::visit(
       [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
         using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
-        campaign::StageSetup<Port> setup{
-            .make_target = [&device, &kind,
-                            how] { return open_fresh(wiring_of(device, kind), how); },
-            .make_model = [&device, &kind,
-                           model] { return open_fresh(wiring_of(device, kind), model); },
-            .restart = {},
-            .is_emulated = how.target.is_emulated(),
-            .how = {.touches_of = device.replay.touches_of, .trailing = trailing}};
-        if (hand.has("restart") && !how.target.is_emulated()) {
-          setup.restart = [hand] { return hand.set("restart", 1); };
-        }
+        auto setup = setup_of(device, kind, how, hand, trailing);
+        setup.make_model = [&device, &kind, model] {
+          return open_fresh(wiring_of(device, kind), model);
+        };
+        return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
+      },
+      device.port);
+}
+
+std::unique_ptr<campaign::Stage> stage_alone(const Device& device, const RigOptions& how,
+                                             const Hand& hand, double speed) {
+  return std::visit(
+      [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
+        using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
+        auto setup = setup_of(device, kind, how, hand, {});
+        setup.how.speed = how.target.is_emulated() ? 1 : speed;
         return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
       },
       device.port);

@@ -24,6 +24,12 @@ namespace armjig::cli {
                                                         const RigOptions& model, const Hand& hand,
                                                         Duration trailing);
 
+/// The target without a model, led in its own time; one that is not emulated `speed` times as fast
+/// as its scripts say.
+[[nodiscard]] std::unique_ptr<campaign::Stage> stage_alone(const Device& device,
+                                                           const RigOptions& how, const Hand& hand,
+                                                           double speed);
+
 /// In what a device that is not emulated may differ from its model. Problems: as for
 /// `ComparisonRules::parse`.
 [[nodiscard]] Outcome<ComparisonRules> live_rules_of(const Device& device);

@@ -11,6 +11,7 @@
 
 #include "cli/device.hpp"
 #include "cli/diff.hpp"
+#include "cli/record_judge.hpp"
 #include "cli/recorded_session.hpp"
 #include "cli/serving.hpp"
 #include "emulators/replay/device_role.hpp"
@@ -19,64 +20,33 @@
 namespace armjig::cli {
 namespace {
 
-/// What the judge of the device refuses of a recording, as far as it was asked for and does not
-/// depend on where the device is.
-class Need {
- public:
-  template <class Kind>
-  [[nodiscard]] static std::string of(const Kind& kind, const std::vector<KeptRecord>& records,
-                                      Permissions granted) {
-    std::string needed;
-    for (std::size_t i = 0; i < kHazardCount; ++i) {
-      const auto refusal = Need{kind.make_judge}.first(records, granted);
-      if (!refusal || granted.allow(refusal->hazard)) break;
-      granted.add(refusal->hazard);
-      needed += fmt::format("{}{}", needed.empty() ? "" : ",", to_string(refusal->hazard));
-    }
-    return needed;
-  }
-
- private:
-  using MakeJudge = std::unique_ptr<Judge> (*)();
-  explicit Need(MakeJudge make_judge) : make_judge_{make_judge} {}
-
-  std::optional<Refusal> first(const std::vector<KeptRecord>& records, const Permissions& granted) {
+/// The permissions that a recording needs besides those that are granted, as `--allow` has them;
+/// empty: none.
+std::string needed_for(RecordJudge::MakeJudge make_judge, const std::vector<KeptRecord>& records,
+                       Permissions granted) {
+  const auto first_refusal = [&]() -> std::optional<Refusal> {
+    RecordJudge judge{make_judge};
     for (const auto& record : records) {
-      if (!is_talk(record.kind)) continue;
-      auto& judge = judges_[record.kind == LinkKind::kSession ? record.id : 0];
-      if (!judge) judge = make_judge_();
-      judge->set_time(record.time);
-      auto message = record.bytes;
-      const bool is_read =
-          record.kind == LinkKind::kBus && record.direction == Direction::kFromDevice;
-      if (record.kind == LinkKind::kBus) {
-        const BusAddress address{static_cast<std::uint8_t>(record.id)};
-        const auto head =
-            is_read ? head_of(read_from(address, {})) : head_of(write_to(address, {}));
-        message.insert(message.begin(), head);
-      }
-      if (record.direction == Direction::kToDevice || is_read) {
-        const auto asked = is_read ? Bytes{message}.first(1) : Bytes{message};
-        const auto refusal = judge->judge(asked, granted);
-        if (refusal && refusal->cause == Refusal::Cause::kRequest) return refusal;
-      }
-      if (record.direction == Direction::kFromDevice || record.kind == LinkKind::kBus) {
-        judge->observe(message);
-      }
+      if (auto refusal = judge.refusal_of(record, granted)) return refusal;
     }
     return std::nullopt;
+  };
+  std::string needed;
+  for (std::size_t i = 0; i < kHazardCount; ++i) {
+    const auto refusal = first_refusal();
+    if (!refusal || granted.allow(refusal->hazard)) break;
+    granted.add(refusal->hazard);
+    needed += fmt::format("{}{}", needed.empty() ? "" : ",", to_string(refusal->hazard));
   }
-
-  MakeJudge make_judge_;
-  std::map<std::uint32_t, std::unique_ptr<Judge>> judges_;  ///< of each connection
-};
+  return needed;
+}
 
 /// As `RigOptions` are given, on any kind of link; what the guard refused has its reason.
 template <class Kind>
 Outcome<Played> play(const Kind& kind, const Device& device, const Session& session,
                      const RigOptions& rig_options, const PlayHow& how) {
   if (!rig_options.target.is_emulated()) {
-    const auto needed = Need::of(kind, session.records, rig_options.permissions);
+    const auto needed = needed_for(kind.make_judge, session.records, rig_options.permissions);
     if (!needed.empty()) {
       return problem(ErrorCode::kForbidden, rig_options.target.text,
                      fmt::format("nothing was sent: this recording needs --allow {}", needed));

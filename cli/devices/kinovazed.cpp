@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/replay/kinovazed.hpp"
 #include "cli/devices/devices.hpp"
+#include "cli/devices/machines.hpp"
 #include "conformance/kinovazed/host/check.hpp"
 #include "conformance/kinovazed/suite.hpp"
 #include "emulators/kinovazed/options.hpp"
@@ -47,7 +48,7 @@ cli::Device device() {
                      .touches_of = replay::touches_of,
                      .verify_table = replay::verify_matrix},
           .draw_session = sessions::draw,
-          .fuzz = {.live_rules = kLiveRules},
+          .fuzz = {.live_rules = kLiveRules, .machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/replay/morap.hpp"
 #include "cli/devices/devices.hpp"
+#include "cli/devices/machines.hpp"
 #include "cli/morap/commands.hpp"
 #include "conformance/morap/host/check.hpp"
 #include "conformance/morap/suite.hpp"
@@ -52,7 +53,7 @@ cli::Device device() {
                      .write = replay::write,
                      .touches_of = replay::touches_of},
           .draw_session = sessions::draw,
-          .fuzz = {.live_rules = kLiveRules},
+          .fuzz = {.live_rules = kLiveRules, .machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures,
           .commands = {cli::add_i2c, cli::add_morap}};

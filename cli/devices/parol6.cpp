@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/replay/parol6.hpp"
 #include "cli/devices/devices.hpp"
+#include "cli/devices/machines.hpp"
 #include "cli/parol6/commands.hpp"
 #include "conformance/parol6/host/check.hpp"
 #include "conformance/parol6/suite.hpp"
@@ -51,7 +52,7 @@ cli::Device device() {
           .program_check = programs::program_check(),
           .replay = {.run = replay::replay, .run_plainly = replay::replay_plainly},
           .draw_session = sessions::draw,
-          .fuzz = {.live_rules = kLiveRules},
+          .fuzz = {.live_rules = kLiveRules, .machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures,
           .watch_rate = 100,

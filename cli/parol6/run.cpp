@@ -62,9 +62,9 @@ struct Halt {
 };
 
 /// An arm on its rig, for one program.
-class Session {
+class ProgramSession {
  public:
-  Session(Rig<StreamPort> rig, const Signals& signals)
+  ProgramSession(Rig<StreamPort> rig, const Signals& signals)
       : rig_{std::move(rig)}, loop_{rig_.port(), drive_}, signals_{signals} {}
 
   /// Waits for a sign of life.
@@ -173,8 +173,8 @@ std::optional<Halt> check_permissions(const script::Program& program, const RigO
 }
 
 /// Brings the arm to where the program can begin, and plans it from there.
-std::optional<Halt> prepare(Session& session, const script::Program& program, Planning& planning,
-                            const RunOptions& options, const Target& target) {
+std::optional<Halt> prepare(ProgramSession& session, const script::Program& program,
+                            Planning& planning, const RunOptions& options, const Target& target) {
   if (auto halt = session.begin()) return halt;
   if (options.must_home) {
     if (auto halt = session.home()) return halt;
@@ -199,7 +199,7 @@ Outcome<Plots> open_plots(const std::string& folder) {
 }
 
 /// Prints what came of it.
-Exit run_on(Session& session, const script::Program& program, Planning planning,
+Exit run_on(ProgramSession& session, const script::Program& program, Planning planning,
             const RunOptions& options, const Target& target, const Plots& files) {
   const auto say = [&](const Halt& halt) {
     if (!halt.text.empty()) {
@@ -259,7 +259,7 @@ Exit run(const Device& device, const RunOptions& options) {
   const Signals signals;  // first, for a terminal's own handlers end the program without a stop
   auto rig = open_rig<OnStream>(device, *how);
   if (!rig) return report(rig.error());
-  Session session{*std::move(rig), signals};
+  ProgramSession session{*std::move(rig), signals};
   return run_on(session, *program, *planning, options, how->target, *plots);
 }
 

@@ -75,7 +75,8 @@ Heard heard(Outcome<Played> played) {
 template <class Port>
 Outcome<void> StageOn<Port>::renew_models() {
   models_.clear();
-  for (std::size_t i = 0; i < (setup_.is_emulated ? 1 : kGuesses.size()); ++i) {
+  const auto count = setup_.is_emulated ? 1 : kGuesses.size();
+  for (std::size_t i = 0; setup_.make_model && i < count; ++i) {
     auto opened = setup_.make_model();
     if (!opened) return tl::unexpected{opened.error()};
     models_.push_back(*std::move(opened));

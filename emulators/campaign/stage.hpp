@@ -53,7 +53,7 @@ class Stage {
 template <class Port>
 struct StageSetup {
   std::function<Outcome<Rig<Port>>()> make_target;
-  std::function<Outcome<Rig<Port>>()> make_model;
+  std::function<Outcome<Rig<Port>>()> make_model;  ///< empty: there is none beside the target
   /// Starts the program of a target that is not emulated again; false: that did not work. Empty:
   /// nobody can.
   std::function<bool()> restart;

@@ -78,7 +78,7 @@ class Clock {
 class Playing {
  public:
   Playing(Instant now, Records records, const PlayHow& how)
-      : clock_{now, records, how.speed}, touches_of_{how.touches_of} {}
+      : clock_{now, records, how.speed}, touches_of_{how.touches_of}, by_hand_{how.by_hand} {}
   [[nodiscard]] Played take() { return std::move(played_); }
   /// The record that was played last has passed.
   void note_passed(Instant now) { played_.passed.push_back(clock_.recorded(now)); }
@@ -97,7 +97,7 @@ class Playing {
   bool touch(Endpoint& port, const KeptRecord& record) {
     bool is_done = false;
     for (const auto& [name, value] : touches_of(details_of(record))) {
-      if (port.touch(name, value)) is_done = true;
+      if (port.touch(name, value) || (by_hand_ && by_hand_(name, value))) is_done = true;
     }
     if (is_done) ++played_.sent;
     return is_done;
@@ -120,6 +120,7 @@ class Playing {
   }
 
   DeviceTouches (*touches_of_)(std::string_view event);
+  const std::function<bool(std::string_view, std::int64_t)>& by_hand_;
 };
 
 class StreamPlaying : public Playing {

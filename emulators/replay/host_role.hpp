@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -29,6 +31,8 @@ struct PlayHow {
   /// after it.
   Duration lead{};
   Duration trailing{};  ///< listens so much longer than the recording lasts
+  /// Does beside the link what the port cannot; false: nobody can. Empty: nobody does.
+  std::function<bool(std::string_view input, std::int64_t value)> by_hand{};
 };
 
 /// What is to be compared, of both sides in order of time.

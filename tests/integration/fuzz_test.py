@@ -5,6 +5,7 @@
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -90,6 +91,44 @@ class Fuzz(unittest.TestCase):
         # It differs from the beginning, and nobody can start it again.
         out = self.fuzz("--target", f"pty:{link}", "--allow", "state", "--known", KNOWN, "--cases", "3", code=0)
         self.assertRegex(out, "nothing is said of telemetry: .*gripper.object 0")
+
+    def learn(self, device, *arguments, code):
+        done = subprocess.run([ARMJIG, "fuzz", device, "--learn", *arguments], capture_output=True, text=True,
+                              timeout=PATIENCE, check=False)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def test_learns_the_documented_machines_and_draws_them(self):
+        for device in ("kinovazed", "parol6", "morap"):
+            drawing = self.folder / f"{device}.json"
+            out = self.learn(device, "--target", "emulated:", "--draw", drawing, code=0)
+            self.assertRegex(out, f"PASS +{device}[.]learn[.].*, as documented")
+            self.assertLessEqual(int(re.search("letters +([0-9]+)", out)[1]), 10000)
+            self.assertTrue(json.loads(drawing.read_text())["machines"][0]["states"][0]["documented"])
+        for ending in ("dot", "svg", "html"):
+            drawing = self.folder / f"node.{ending}"
+            self.learn("morap", "--target", "emulated:", "--draw", drawing, code=0)
+            self.assertIn("uncalibrated", drawing.read_text())
+
+    def test_names_a_wrong_step_of_a_machine(self):
+        out = self.learn("kinovazed", "--target", "emulated:?fault=row:frozen.Unfreeze.rejected", code=1)
+        self.assertRegex(out, "FAIL +kinovazed.learn.server.frozen.Unfreeze")
+
+    def test_says_when_letters_do_not_suffice(self):
+        out = self.learn("kinovazed", "--target", "emulated:", "--most-letters", "500", code=3)
+        self.assertIn("the letters were used up", out)
+
+    def test_says_what_it_lacks(self):
+        link = self.folder / "board"
+        emulator = subprocess.Popen([ARMJIG, "emulate", "parol6", "--link", link, "--speed", "20"],
+                                    stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
+        self.addCleanup(emulator.stdout.close)
+        self.addCleanup(emulator.wait)
+        self.addCleanup(emulator.terminate)
+        emulator.stdout.readline()
+        out = self.learn("parol6", "--target", f"pty:{link}", "--allow", "all", "--machine", "gripper", code=2)
+        self.assertIn("--restart", out)
+        self.assertIn("its entry has no alphabet", self.learn("demo", "--target", "emulated:", code=2))
 
 
 if __name__ == "__main__":

@@ -37,6 +37,7 @@ constexpr Room kRooms[] = {
     {"harness/timing", "harness/core"},
     {"harness/motion", "harness/core harness/wire harness/arm"},
     {"harness/report", "harness/core"},
+    {"harness/mealy", "harness/core harness/report"},
     {"harness/drive",
      "harness/core harness/wire harness/arm harness/config harness/link harness/timing "
      "harness/motion"},
@@ -64,7 +65,7 @@ constexpr Room kRooms[] = {
      "emulators/kinovazed emulators/morap emulators/parol6 emulators/memory"},
     {"emulators/campaign",
      "harness/core harness/wire harness/files harness/capture harness/config harness/compare "
-     "harness/link harness/rig harness/report emulators/sessions emulators/memory "
+     "harness/link harness/rig harness/report harness/mealy emulators/sessions emulators/memory "
      "emulators/replay"},
     {"emulators/memory", "harness/core harness/link emulators/i2c"},
     {"emulators/usb", "harness/core harness/link"},
