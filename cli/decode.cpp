@@ -140,7 +140,7 @@ Outcome<void> decode_recording(Outcome<std::unique_ptr<CaptureReader>> reader,
     messages.clear();
   };
   int unanswered = 0;
-  auto read = (*reader)->for_each([&](const CaptureRecord& record) {
+  auto read = for_each_record(**reader, [&](const CaptureRecord& record) {
     if (!is_wanted(record, options)) return;
     const auto* const other = find_recorded_device(devices, record.link->device);
     if (other != nullptr && other != &device) return;

@@ -143,6 +143,21 @@ auto setup_of(const Device& device, const Kind& kind, const RigOptions& how, con
   return setup;
 }
 
+/// `complete(kind, setup)` adds to what all stages have.
+template <class Complete>
+std::unique_ptr<campaign::Stage> stage_with(const Device& device, const RigOptions& how,
+                                            const Hand& hand, Duration trailing,
+                                            Complete complete) {
+  return std::visit(
+      [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
+        using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
+        auto setup = setup_of(device, kind, how, hand, trailing);
+        complete(kind, setup);
+        return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
+      },
+      device.port);
+}
+
 }  // namespace
 
 Outcome<Material> material_of(const Device& device, const RigOptions& how, const RigOptions& model,
@@ -180,28 +195,18 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
 std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions& how,
                                           const RigOptions& model, const Hand& hand,
                                           Duration trailing) {
-  return std::visit(
-      [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
-        using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
-        auto setup = setup_of(device, kind, how, hand, trailing);
-        setup.make_model = [&device, &kind, model] {
-          return open_fresh(wiring_of(device, kind), model);
-        };
-        return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
-      },
-      device.port);
+  return stage_with(device, how, hand, trailing, [&](const auto& kind, auto& setup) {
+    setup.make_model = [&device, &kind, model] {
+      return open_fresh(wiring_of(device, kind), model);
+    };
+  });
 }
 
 std::unique_ptr<campaign::Stage> stage_alone(const Device& device, const RigOptions& how,
                                              const Hand& hand, double speed) {
-  return std::visit(
-      [&](const auto& kind) -> std::unique_ptr<campaign::Stage> {
-        using Port = typename std::remove_cvref_t<decltype(kind)>::Port;
-        auto setup = setup_of(device, kind, how, hand, {});
-        setup.how.speed = how.target.is_emulated() ? 1 : speed;
-        return std::make_unique<campaign::StageOn<Port>>(std::move(setup));
-      },
-      device.port);
+  return stage_with(device, how, hand, {}, [&](const auto& /*kind*/, auto& setup) {
+    setup.how.speed = how.target.is_emulated() ? 1 : speed;
+  });
 }
 
 Outcome<ComparisonRules> live_rules_of(const Device& device) {

@@ -17,6 +17,7 @@
 #include "cli/serving.hpp"
 #include "cli/terminal.hpp"
 #include "emulators/host/relay.hpp"
+#include "emulators/memory/overheard.hpp"
 #include "harness/rig/real_target.hpp"
 
 namespace armjig::cli {
@@ -114,7 +115,7 @@ Exit record(Devices devices, const RecordOptions& options) {
         if (!begun) return tl::unexpected{begun.error()};
         capture = *std::move(begun);
         auto hosted = capture->watch(*std::move(opened));
-        if (*shadow) hosted = (*shadow)->watch(std::move(hosted));
+        if (*shadow) hosted = overhear(std::move(hosted), (*shadow)->overhearer());
         if (*check) hosted = (*check)->watch(std::move(hosted));
         return serve(std::move(hosted), *serving);
       },

@@ -23,7 +23,7 @@ template <class Kind>
 Outcome<std::unique_ptr<typename Kind::Port>> open_served(const Kind& kind, const Target& target,
                                                           std::string_view scheme,
                                                           std::unique_ptr<Served>& served) {
-  using Opened = Outcome<std::unique_ptr<typename Kind::Port>>;
+  using OpenedPort = Outcome<std::unique_ptr<typename Kind::Port>>;
   if constexpr (std::is_same_v<Kind, OnBus>) {
     return problem(ErrorCode::kUnsupported, target.text, "a bus cannot be hosted in this process");
   } else {
@@ -35,7 +35,7 @@ Outcome<std::unique_ptr<typename Kind::Port>> open_served(const Kind& kind, cons
     }
     return emulate(kind, target.options, target.text)
         .and_then([&](auto hosted) { return Host::open(std::move(hosted), how); })
-        .and_then([&](Host host) -> Opened {
+        .and_then([&](Host host) -> OpenedPort {
           served = serve_aside(std::move(host));
           return parse_target(served->target()).and_then([&](const Target& place) {
             return open_target<typename Kind::Port>(place, line_of(kind));
@@ -70,7 +70,7 @@ std::function<std::shared_ptr<Bench>()> reference_of(const Device& device, const
                                                      const std::string& profile) {
   RigOptions other;
   other.target.text = other.target.scheme = "emulated";
-  if (profile != to_string(Profile::kFirmware)) other.target.options["profile"] = profile;
+  if (profile != to_string(armjig::Profile::kFirmware)) other.target.options["profile"] = profile;
   other.impairment = how.impairment;
   return [&device, other, scheme = how.target.scheme] {
     return open_reference(device, other, scheme);

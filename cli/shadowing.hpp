@@ -7,7 +7,6 @@
 
 #include "cli/command.hpp"
 #include "cli/device.hpp"
-#include "emulators/memory/overheard.hpp"
 #include "emulators/shadow/shadow.hpp"
 
 namespace armjig::cli {
@@ -30,11 +29,7 @@ class LiveShadow {
                                                                  const ShadowOptions& options,
                                                                  bool is_real);
 
-  /// The same device, overheard. `this` must outlive it.
-  template <class Hosted>
-  [[nodiscard]] std::unique_ptr<Hosted> watch(std::unique_ptr<Hosted> device) {
-    return overhear(std::move(device), *shadow_);
-  }
+  /// Has to overhear the device, and to outlive it.
   [[nodiscard]] Overhearer& overhearer() noexcept { return *shadow_; }
 
   /// Sums up on standard error.

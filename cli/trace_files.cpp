@@ -314,7 +314,7 @@ Exit info(const Reading& reading, const std::vector<std::string>& paths) {
     };
     std::map<std::string, Count> links;
     Instant last{};
-    const auto read = (*reader)->for_each([&](const CaptureRecord& record) {
+    const auto read = for_each_record(**reader, [&](const CaptureRecord& record) {
       auto& count = links[fmt::format("{} ({})", record.link->name, to_string(record.link->kind))];
       ++count.records;
       count.bytes += record.bytes.size();
@@ -395,7 +395,7 @@ Exit show(const Reading& reading, const Showing& options) {
                          },
                          std::move(hear)};
   bool is_empty = true;
-  const auto read = (*reader)->for_each([&](const CaptureRecord& record) {
+  const auto read = for_each_record(**reader, [&](const CaptureRecord& record) {
     summary.add(record);
     if (html && record.link->kind == LinkKind::kEvents) session.add_event(record);
     is_empty = false;

@@ -12,6 +12,7 @@
 #include "emulators/replay/replay.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/nesting.hpp"
+#include "harness/core/text_member.hpp"
 #include "harness/files/user_file.hpp"
 #include "harness/rig/target.hpp"
 
@@ -53,9 +54,7 @@ Outcome<Verified> verify_table(const std::string& path, Devices devices) {
 /// Of the header; empty if it has none.
 std::string title_of(const Trace& trace) {
   const auto header = nlohmann::json::parse(trace.header, nullptr, /*allow_exceptions=*/false);
-  const auto title =
-      header.is_object() ? header.value("title", nlohmann::json{}) : nlohmann::json{};
-  return title.is_string() ? title.get<std::string>() : std::string{};
+  return text_member(header, "title");
 }
 
 /// By a device like the one that was recorded, on a port in memory.

@@ -73,11 +73,12 @@ struct Document {
                                          std::string_view instead = {}) noexcept {
   return {id, Level::kMust, text, source, profiles, instead};
 }
-[[nodiscard]] constexpr Requirement should(std::string_view id, std::string_view text,
-                                           std::string_view source,
-                                           Profiles profiles = Profiles::kBoth,
-                                           std::string_view instead = {}) noexcept {
-  return {id, Level::kShould, text, source, profiles, instead};
+/// The same arguments as of `must`.
+template <class... More>
+[[nodiscard]] constexpr Requirement should(const More&... more) noexcept {
+  auto requirement = must(more...);
+  requirement.level = Level::kShould;
+  return requirement;
 }
 
 /// One that no case can check on the wire.

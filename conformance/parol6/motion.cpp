@@ -70,6 +70,11 @@ void expect_moved(BoardBench& board, const Stretch& stretch) {
   board.expect_true(has_moved, "motion", "all joints stand still");
 }
 
+void spoil_disabled(BoardBench& board) {
+  board.spoil();
+  board.act(with_code(Command::kDisable));
+}
+
 void expect_reported(BoardBench& board, const Answer& answer, const Speeds& speeds) {
   for (std::size_t j = 0; j < kJointCount; ++j) board.expect(answer, speed_field(j), speeds[j]);
 }

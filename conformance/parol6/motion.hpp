@@ -33,6 +33,9 @@ void expect_still(BoardBench& board, const Stretch& stretch);
 /// Expects that at least one joint has moved.
 void expect_moved(BoardBench& board, const Stretch& stretch);
 
+/// Disables the board, and nothing of how it stood is taken for granted afterwards.
+void spoil_disabled(BoardBench& board);
+
 /// Expects the speeds that telemetry reports.
 void expect_reported(BoardBench& board, const Answer& answer, const Speeds& speeds);
 

@@ -87,6 +87,13 @@ std::string camel_of(std::string_view name) {
   return camel;
 }
 
+/// Discarded if it is none.
+Outcome<Json> json_of(const fs::path& path) {
+  return read_user_file(path.string()).map([](const std::string& text) {
+    return Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  });
+}
+
 }  // namespace
 
 std::string name_of(const Finding& finding) {
@@ -137,12 +144,11 @@ Outcome<Folder> Folder::open(const std::string& path, CampaignFacts facts) {
 Outcome<CampaignState> Folder::load() const {
   const auto path = path_ / "campaign.json";
   if (!fs::exists(path)) return CampaignState{};
-  const auto text = read_user_file(path.string());
-  if (!text) return tl::unexpected{text.error()};
-  const auto json = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  const auto json = json_of(path);
+  if (!json) return tl::unexpected{json.error()};
   const bool is_ours =
-      json.is_object() && json.value("seed", Json{}) == facts_.seed &&
-      json.value("shard", Json{}) == fmt::format("{}/{}", facts_.share.index, facts_.share.count);
+      json->is_object() && json->value("seed", Json{}) == facts_.seed &&
+      json->value("shard", Json{}) == fmt::format("{}/{}", facts_.share.index, facts_.share.count);
   if (!is_ours) {
     return problem(ErrorCode::kBadValue, path.string(),
                    "it is of a campaign with another --seed or --shard; name another folder");
@@ -152,9 +158,9 @@ Outcome<CampaignState> Folder::load() const {
 
 Outcome<CampaignState> Folder::load_any() const {
   const auto path = path_ / "campaign.json";
-  const auto text = read_user_file(path.string());
-  if (!text) return tl::unexpected{text.error()};
-  const auto json = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  const auto read = json_of(path);
+  if (!read) return tl::unexpected{read.error()};
+  const auto& json = *read;
   if (!json.is_object() || json.value("format", Json{}) != kFormat) {
     return problem(ErrorCode::kMalformed, path.string(), "armjig fuzz did not write it");
   }

@@ -30,10 +30,6 @@ class BusFront final : public Front {
     return {};
   }
   void forward() override {}
-  [[nodiscard]] std::vector<DeviceInput> inputs() const override { return hand_.inputs(); }
-  [[nodiscard]] bool set_input(std::string_view name, std::int64_t value) override {
-    return hand_.set_input(name, value);
-  }
   [[nodiscard]] std::vector<std::string> targets() const override {
     std::vector<std::string> all;
     for (const auto& adapter : adapters_) all.push_back(adapter.cable->target());
@@ -61,7 +57,6 @@ class BusFront final : public Front {
   Loop& loop_;
   EmulatedBusPort<HostedBus*> port_;
   std::vector<Adapter> adapters_;
-  CableHand hand_;
 };
 
 }  // namespace

@@ -58,15 +58,18 @@ class Front {
   /// Hands over what the device has sent.
   virtual void forward() = 0;
   /// What a hand can do to its links.
-  [[nodiscard]] virtual std::vector<DeviceInput> inputs() const { return {}; }
+  [[nodiscard]] std::vector<DeviceInput> inputs() const { return hand_.inputs(); }
   /// False: there is no such input, or it does not take the value.
-  [[nodiscard]] virtual bool set_input(std::string_view /*name*/, std::int64_t /*value*/) {
-    return false;
+  [[nodiscard]] bool set_input(std::string_view name, std::int64_t value) {
+    return hand_.set_input(name, value);
   }
   [[nodiscard]] virtual std::vector<std::string> targets() const = 0;
   [[nodiscard]] virtual LinkStatistics statistics() const = 0;
   /// The bus, for one that is one.
   [[nodiscard]] virtual BusPort* bus() noexcept { return nullptr; }
+
+ protected:
+  CableHand hand_;
 };
 
 /// How a front exports USB devices. `on_turn` is called after one was told something.

@@ -48,11 +48,6 @@ class StreamFront final : public Front {
     for (const auto& link : links_) link->read_on();
   }
 
-  [[nodiscard]] std::vector<DeviceInput> inputs() const override { return hand_.inputs(); }
-  [[nodiscard]] bool set_input(std::string_view name, std::int64_t value) override {
-    return hand_.set_input(name, value);
-  }
-
   [[nodiscard]] std::vector<std::string> targets() const override {
     std::vector<std::string> all;
     for (const auto& link : links_) {
@@ -88,7 +83,6 @@ class StreamFront final : public Front {
   Loop& loop_;
   HostedStream& device_;
   std::vector<std::unique_ptr<ClientLink>> links_;
-  CableHand hand_;
   ClientLink* listener_ = nullptr;  ///< who gets answers: one of `links_`
 };
 

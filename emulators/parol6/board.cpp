@@ -282,9 +282,13 @@ void Board::end_homing() noexcept {
   for (auto& joint : joints_) joint.stepper.set_speed(StepRate{});
 }
 
-void Board::jog(Micros now) noexcept {
+void Board::begin_motion() noexcept {
   end_homing();
   home_finished_ = true;
+}
+
+void Board::jog(Micros now) noexcept {
+  begin_motion();
   for (std::size_t j = 0; j < kJointCount; ++j) {
     auto& joint = joints_[j];
     const auto speed = latched_.speed[j];
@@ -294,8 +298,7 @@ void Board::jog(Micros now) noexcept {
 }
 
 void Board::go_to(Micros now) noexcept {
-  end_homing();
-  home_finished_ = true;
+  begin_motion();
   for (std::size_t j = 0; j < kJointCount; ++j) {
     auto& joint = joints_[j];
     const auto goal = latched_.position[j];

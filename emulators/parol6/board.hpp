@@ -122,6 +122,7 @@ class Board : public Sending<Emission> {
   [[nodiscard]] Next demo(Micros now) noexcept;
   [[nodiscard]] bool run_all(Micros now) noexcept;
   void end_homing() noexcept;
+  void begin_motion() noexcept;
   [[nodiscard]] bool is_stopped_by_hand() const noexcept;
   void watch_silence() noexcept;
 

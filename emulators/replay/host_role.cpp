@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "harness/core/text_member.hpp"
 #include "harness/link/session_port.hpp"
 
 namespace armjig {
@@ -35,11 +36,6 @@ std::string members_of(const OrderedJson& json) {
   return text.substr(1, text.size() - 2);
 }
 
-std::string text_of(const OrderedJson& json, const char* key) {
-  const auto value = json.value(key, OrderedJson{});
-  return value.is_string() ? value.get<std::string>() : std::string{};
-}
-
 template <class Number>
 Number number_of(const OrderedJson& json, const char* key, Number otherwise) {
   const auto value = json.value(key, OrderedJson{});
@@ -47,8 +43,8 @@ Number number_of(const OrderedJson& json, const char* key, Number otherwise) {
 }
 
 std::string name_of_event(const OrderedJson& json) {
-  const auto name = text_of(json, "dir");
-  return name.empty() ? text_of(json, "op") : name;
+  const auto name = text_member(json, "dir");
+  return name.empty() ? text_member(json, "op") : name;
 }
 
 /// Times of the recording on the clock of the port. A port whose clock is already beyond the first
@@ -114,7 +110,7 @@ class Playing {
  private:
   [[nodiscard]] DeviceTouches touches_of(const OrderedJson& event) const {
     if (name_of_event(event) == "input" && event.contains("name")) {
-      return {{text_of(event, "name"), number_of<std::int64_t>(event, "value", 0)}};
+      return {{text_member(event, "name"), number_of<std::int64_t>(event, "value", 0)}};
     }
     return touches_of_ == nullptr ? DeviceTouches{} : touches_of_(event.dump());
   }
@@ -165,7 +161,7 @@ class ServerPlaying : public Playing {
     for (const auto& record : records) {
       if (record.kind != LinkKind::kEvents) continue;
       const auto event = details_of(record);
-      if (text_of(event, "text") == "device-eof") ends_alike_.push_back(id_of(event));
+      if (text_member(event, "text") == "device-eof") ends_alike_.push_back(id_of(event));
     }
   }
 
@@ -224,7 +220,7 @@ class ServerPlaying : public Playing {
     const auto event = details_of(record);
     const auto dir = name_of_event(event);
     const auto id = id_of(event);
-    const auto text = text_of(event, "text");
+    const auto text = text_member(event, "text");
     const auto found = connections_.find(id);
     const bool is_end = dir == "disconnect" && found != connections_.end();
     if (is_end && text.starts_with("device-")) {
@@ -440,7 +436,7 @@ class BusPlaying : public Playing {
 
   /// Such buses do not say which byte was refused: the recorded one, if there is one.
   static std::string refusal_of(const Part& part, Transfer how, std::size_t count) {
-    auto recorded = text_of(part.details, "ack");
+    auto recorded = text_member(part.details, "ack");
     const bool is_address = recorded == "N";
     const bool is_byte = recorded.size() > 1 && recorded.ends_with('N');
     if (count > 1 || (how == Transfer::kAddressRefused ? is_address : is_byte)) return recorded;

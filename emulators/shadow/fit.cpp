@@ -73,6 +73,12 @@ std::string roundest(double least, double most) {
   return fmt::format("{:.{}f}", middle, kMostDecimals);
 }
 
+FigureAnswer answer_within(double value, double error, std::string basis) {
+  return {.value = roundest(value - error, value + error),
+          .estimates = {{"", value, value - error, value + error}},
+          .basis = std::move(basis)};
+}
+
 DeviceOptions with(DeviceOptions options, std::string_view name, std::string value) {
   options.insert_or_assign(std::string{name}, std::move(value));
   return options;

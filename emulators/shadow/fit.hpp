@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -76,6 +75,9 @@ struct Fit {
 [[nodiscard]] Outcome<Fit> fit(std::span<const FitFigure> figures, const FitTalk& talk);
 
 // What estimates are made of.
+
+/// One figure that is known up to `error`, and what tells it.
+[[nodiscard]] FigureAnswer answer_within(double value, double error, std::string basis);
 
 /// The number with the fewest decimals, six at most, between two; near their middle.
 [[nodiscard]] std::string roundest(double least, double most);

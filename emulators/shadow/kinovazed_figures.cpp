@@ -10,6 +10,7 @@
 #include <map>
 #include <vector>
 
+#include "harness/core/median.hpp"
 #include "harness/wire/kinovazed/vocabulary.hpp"
 
 namespace armjig::kinovazed::shadow {
@@ -17,12 +18,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using Seconds = std::chrono::duration<double>;
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// A heartbeat comes one second after the one before, on the server's clock, unless a command keeps
 /// the arm busy just then; so most are right.
@@ -50,10 +45,8 @@ Outcome<FigureAnswer> clock(const FitTalk& talk, const DeviceOptions& /*so_far*/
   const auto noise = 1.5 * median_of(off);
   const auto error = 3 * (noise + kStamps) / std::sqrt(static_cast<double>(periods.size())) * 100;
   const auto percent = (1 / period - 1) * 100;
-  return FigureAnswer{
-      .value = roundest(percent - error, percent + error),
-      .estimates = {{"", percent, percent - error, percent + error}},
-      .basis = fmt::format("{} heartbeats, noise {:.0f} us", periods.size(), noise * 1e6)};
+  return answer_within(percent, error,
+                       fmt::format("{} heartbeats, noise {:.0f} us", periods.size(), noise * 1e6));
 }
 
 Outcome<FigureAnswer> plant(const FitTalk& talk, const DeviceOptions& so_far) {

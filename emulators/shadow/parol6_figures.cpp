@@ -101,11 +101,9 @@ Outcome<FigureAnswer> clock(const FitTalk& talk, const DeviceOptions& /*so_far*/
   const auto noise = std::sqrt(squares / static_cast<double>(intervals.size()));
   const auto error = (3 * noise * std::sqrt(chains) + chains * kTick) / host * 100;
   const auto percent = (rate - 1) * 100;
-  return FigureAnswer{
-      .value = roundest(percent - error, percent + error),
-      .estimates = {{"", percent, percent - error, percent + error}},
-      .basis = fmt::format("{} intervals that the board counted, {:.1f} s, noise {:.1f} us",
-                           intervals.size(), host / 1e6, noise)};
+  return answer_within(percent, error,
+                       fmt::format("{} intervals that the board counted, {:.1f} s, noise {:.1f} us",
+                                   intervals.size(), host / 1e6, noise));
 }
 
 double rate_of(const DeviceOptions& options) {

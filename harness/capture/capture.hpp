@@ -90,15 +90,6 @@ class CaptureReader {
   [[nodiscard]] virtual std::string_view format() const noexcept = 0;
   /// The next record; false at the end. After a problem nothing more can be read.
   [[nodiscard]] virtual Outcome<bool> next(CaptureRecord& record) = 0;
-  /// Hands `use(record)` all that are left. Problems: as of `next`, after what could be read.
-  template <class Use>
-  [[nodiscard]] Outcome<void> for_each(Use use) {
-    CaptureRecord record;
-    Outcome<bool> has_record = true;
-    while ((has_record = next(record)) && *has_record) use(std::as_const(record));
-    if (!has_record) return tl::unexpected{has_record.error()};
-    return {};
-  }
   /// What is missing or was not understood, when all is read; empty: nothing.
   [[nodiscard]] virtual std::string warning() const { return {}; }
 
@@ -113,14 +104,18 @@ class CaptureReader {
   std::deque<CaptureLink> links_;
 };
 
-/// All that are left, one after the other. What `use` answers, an `Outcome<void>`, may end it.
-/// Problems: those of `use`, and of the file.
+/// All that are left, one after the other. If `use` answers an `Outcome<void>`, that may end it.
+/// Problems: those of `use`, and of the file, after what could be read of it.
 template <class Use>
 [[nodiscard]] Outcome<void> for_each_record(CaptureReader& reader, Use use) {
   CaptureRecord record;
   Outcome<bool> has_record = true;
   while ((has_record = reader.next(record)) && *has_record) {
-    if (auto used = use(record); !used) return used;
+    if constexpr (std::is_void_v<std::invoke_result_t<Use, const CaptureRecord&>>) {
+      use(std::as_const(record));
+    } else if (auto used = use(std::as_const(record)); !used) {
+      return used;
+    }
   }
   if (!has_record) return tl::unexpected{std::move(has_record.error())};
   return {};

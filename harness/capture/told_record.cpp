@@ -5,20 +5,17 @@
 #include <optional>
 #include <string>
 
+#include "harness/core/text_member.hpp"
+
 namespace armjig {
 namespace {
 
 using Details = nlohmann::json;
 using Happened = ConnectionEvent::Kind;
 
-std::string text_at(const Details& json, const char* key) {
-  const auto value = json.value(key, Details{});
-  return value.is_string() ? value.get<std::string>() : std::string{};
-}
-
 std::optional<Happened> border_of(const Details& event) {
-  const auto how = text_at(event, "text");
-  const auto what = text_at(event, "dir");
+  const auto how = text_member(event, "text");
+  const auto what = text_member(event, "dir");
   if (what == "connect") return how == "ok" ? std::optional{Happened::kBegun} : std::nullopt;
   if (what != "disconnect") return std::nullopt;
   if (how == "client-half-close") return Happened::kHalfClosed;
@@ -33,15 +30,15 @@ void tell_event(const CaptureRecord& record, const Details& event, Overhearer& o
     return overhearer.on_connection({record.time, number, *border, {}});
   }
   const auto value = event.value("value", Details{});
-  const bool is_input = text_at(event, "dir") == "input" || text_at(event, "op") == "input";
+  const bool is_input = text_member(event, "dir") == "input" || text_member(event, "op") == "input";
   if (is_input && value.is_number_integer()) {
-    overhearer.on_input(record.time, text_at(event, "name"), value.get<std::int64_t>());
+    overhearer.on_input(record.time, text_member(event, "name"), value.get<std::int64_t>());
   }
 }
 
 void tell_part(const CaptureRecord& record, const Details& details, Overhearer& overhearer) {
   const bool is_read = record.direction == Direction::kFromDevice;
-  auto acks = text_at(details, "ack");
+  auto acks = text_member(details, "ack");
   if (acks.empty()) acks.assign(is_read ? 1 : 1 + record.bytes.size(), 'A');
   const bool has_stop = details.value("stop", Details{}) != false;
   overhearer.on_bus({.begin = record.time,

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "harness/core/median.hpp"
+
 namespace armjig {
 namespace {
 
@@ -32,12 +34,6 @@ Difference worst_of(const std::vector<Compared>& figures) noexcept {
     if (has(one)) return one;
   }
   return Difference::kNone;
-}
-
-Duration median_of(std::vector<Duration> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// Of the differences of neighbours, in one figure.

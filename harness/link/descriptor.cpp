@@ -68,7 +68,8 @@ Result<bool> wait_for(const Descriptor& descriptor, Readiness readiness, const S
 
 Result<bool> wait_for(int descriptor, std::optional<Readiness> readiness,
                       const std::function<Duration()>& left) noexcept {
-  const short events = !readiness ? 0 : (*readiness == Readiness::kReadable ? POLLIN : POLLOUT);
+  short events = 0;
+  if (readiness) events = *readiness == Readiness::kReadable ? POLLIN : POLLOUT;
   while (true) {
     pollfd entry{.fd = descriptor, .events = events, .revents = 0};
     // Not poll(): its milliseconds would round every deadline up.

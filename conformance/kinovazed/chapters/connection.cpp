@@ -9,6 +9,13 @@ void connect_anew(ServerBench& server) {
   server.connect();
 }
 
+/// By a second client, while the first is served.
+void say_while_waiting(ServerBench& server, std::string_view text) {
+  server.as(1);
+  server.connect();
+  server.say(text);
+}
+
 constexpr Clause kConnectionClauses[] = {
     must("kinovazed.connection.silent-start",
          "Nothing is sent because somebody connects: the first message is a heartbeat.",
@@ -107,9 +114,7 @@ constexpr Clause kConnectionClauses[] = {
          "server, recording connection-second-waits"),
     look("EStop of a waiting client is answered in its turn.",
          [](ServerBench& server) {
-           server.as(1);
-           server.connect();
-           server.say("EStop");
+           say_while_waiting(server, "EStop");
            server.about("EStop of a waiting client");
            server.expect_no_message(500ms);
            server.as(0);
@@ -123,9 +128,7 @@ constexpr Clause kConnectionClauses[] = {
          "server; reference 1.7"),
     from(kStopped, Hazard::kState, "QuitEStop of a client that waited and left takes effect.",
          [](ServerBench& server) {
-           server.as(1);
-           server.connect();
-           server.say("QuitEStop");
+           say_while_waiting(server, "QuitEStop");
            server.leave();
            server.as(0);
            server.pause(100ms);

@@ -48,6 +48,12 @@ void expect_not_ready(ServerBench& server, std::string_view command) {
   expect_time(server, time_after_early_stop(server, command), 700ms, ServerBench::kMotionTime);
 }
 
+/// On a way that takes longer than what comes.
+void set_out(ServerBench& server) {
+  server.accept(kFarObjective);
+  server.pause(300ms);
+}
+
 constexpr Clause kInterruptClauses[] = {
     must("kinovazed.event.table",
          "The arm's own ends act where they are awaited: folding ends in retracted, unfolding "
@@ -82,8 +88,7 @@ constexpr Clause kInterruptClauses[] = {
          "document; server, recording interrupt-objective-by-mode"),
     in(kIdle, "JoystickModeSet comes, and nothing for 6 s.",
        [](ServerBench& server) {
-         server.accept(kFarObjective);
-         server.pause(300ms);
+         set_out(server);
          server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
          server.expect_quiet(kLater);
          server.expect_beat(69);
@@ -94,8 +99,7 @@ constexpr Clause kInterruptClauses[] = {
          "server, recording interrupt-objective-by-objective"),
     in(kIdle, "ObjectiveDone comes, and nothing for 6 s.",
        [](ServerBench& server) {
-         server.accept(kFarObjective);
-         server.pause(300ms);
+         set_out(server);
          server.perform("RunObjective:Home", Event::kObjectiveDone);
          server.expect_quiet(kLater);
        }),

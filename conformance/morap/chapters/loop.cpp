@@ -86,6 +86,11 @@ void stored(NodeBench& node, CommandId mode, float reference, std::string_view s
   node.expect_levels_at_ticks(levels_by_law(node, set, reference, counts));
 }
 
+/// Whose output grows by four levels at each tick.
+void run_integrator(NodeBench& node) {
+  run(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.25F), 0.75F);
+}
+
 constexpr Case loop(std::string_view rule, CaseBody run) {
   return from(kFresh, Hazard::kProgram, rule, run);
 }
@@ -223,7 +228,7 @@ constexpr Clause kLoopClauses[] = {
          "recording static-speed-locked", Profiles::kFirmware),
     loop("Nothing but an integrator.",
          [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.25F), 0.75F);
+           run_integrator(node);
            node.expect_levels_at_ticks({4, 8, 12, 16});
          }),
 
@@ -335,7 +340,7 @@ constexpr Clause kLoopClauses[] = {
          "recording static-mode-switch-locked", Profiles::kFirmware),
     loop("An integrator, with a voltage between.",
          [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.25F), 0.75F);
+           run_integrator(node);
            node.expect_levels_at_ticks({4, 8});
            node.send(kVoltage, 0.0F);
            node.expect_levels_at_ticks({0});
@@ -347,7 +352,7 @@ constexpr Clause kLoopClauses[] = {
          "recording static-position-locked", Profiles::kFirmware),
     loop("An integrator.",
          [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.25F), 0.75F);
+           run_integrator(node);
            node.send(kPosition, 0.375F);
            node.expect_levels_at_ticks({4, 6, 8});
          }),
@@ -357,7 +362,7 @@ constexpr Clause kLoopClauses[] = {
          "firmware, tick", Profiles::kFirmware),
     loop("An integrator, and the speed controller.",
          [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.25F), 0.75F);
+           run_integrator(node);
            node.expect_levels_at_ticks({4, 8});
            node.send(proportional(kRate, 1.0F, ControllerKind::kSpeed));
            node.expect_levels_at_ticks({12, 4, 8});
@@ -368,7 +373,7 @@ constexpr Clause kLoopClauses[] = {
          "recording static-reenable-within-tick", Profiles::kFirmware),
     loop("An integrator.",
          [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.25F), 0.75F);
+           run_integrator(node);
            node.expect_levels_at_ticks({4, 8});
            node.send(kDisable);
            node.send(kPosition, 0.75F);

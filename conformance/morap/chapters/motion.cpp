@@ -51,11 +51,21 @@ std::pair<float, float> start_currents(NodeBench& node, float volts) {
   return currents;
 }
 
-/// How far a shaft that was driven turns on in a quarter of a second when nothing drives it.
-float coast(NodeBench& node, std::optional<CommandId> brake) {
+void drive_and_let_go(NodeBench& node) {
   node.send(kVoltage, 1.5F);
   node.pause(300ms);
   node.send(kDisable);
+}
+
+/// Half a radian, by the stored controller.
+void go_to_half(NodeBench& node) {
+  node.send(kPosition, 0.5F);
+  node.pause(1500ms);
+}
+
+/// How far a shaft that was driven turns on in a quarter of a second when nothing drives it.
+float coast(NodeBench& node, std::optional<CommandId> brake) {
+  drive_and_let_go(node);
   if (brake) node.send(*brake);
   return turned(node, 250ms);
 }
@@ -91,8 +101,7 @@ constexpr Clause kMotionClauses[] = {
          "document, position; recording loop-position-default"),
     moving("0.5 rad in 1.5 s.",
            [](NodeBench& node) {
-             node.send(kPosition, 0.5F);
-             node.pause(1500ms);
+             go_to_half(node);
              node.expect_near(kReadAngle, 0.5, 0.03);
              node.send(kDisable);
            }),
@@ -120,8 +129,7 @@ constexpr Clause kMotionClauses[] = {
          "document, position; recording loop-position-default"),
     moving("For 0.3 s.",
            [](NodeBench& node) {
-             node.send(kPosition, 0.5F);
-             node.pause(1500ms);
+             go_to_half(node);
              const float angle = turned(node, 300ms);
              node.expect_true(std::fabs(angle) < 0.01F, "no further turn",
                               fmt::format("{} rad", angle));
@@ -133,9 +141,7 @@ constexpr Clause kMotionClauses[] = {
     /// With little friction it coasts for long: it is at rest, or at least half as fast as it was.
     moving("1.5 V, then 0.",
            [](NodeBench& node) {
-             node.send(kVoltage, 1.5F);
-             node.pause(300ms);
-             node.send(kDisable);
+             drive_and_let_go(node);
              const float before = std::fabs(turned(node, 300ms));
              node.pause(3s);
              const float angle = std::fabs(turned(node, 300ms));

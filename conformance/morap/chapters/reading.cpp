@@ -9,6 +9,13 @@ void zero_at_boot(NodeBench& node) {
   node.expect_bytes(selector, "00 00 00 00");
 }
 
+/// The bytes of an angle that is not 0.
+auto turned_angle(NodeBench& node) {
+  node.turn(1000);
+  node.send(kReadAngle);
+  return node.read_on(4);
+}
+
 constexpr Clause kReadingClauses[] = {
     must("morap.read.first-mode", "Before anything was chosen, a read answers with the angle.",
          "firmware, vector 1; the document is silent", Profiles::kFirmware),
@@ -115,9 +122,7 @@ constexpr Clause kReadingClauses[] = {
          "firmware, reading"),
     from(kFresh, Hazard::kState, "The shaft turns behind the first byte.",
          [](NodeBench& node) {
-           node.turn(1000);
-           node.send(kReadAngle);
-           const auto before = node.read_on(4);
+           const auto before = turned_angle(node);
            node.expect_same(node.read_around(node.address(), 4, [&] { node.turn(5000); }), before);
          }),
 
@@ -126,9 +131,7 @@ constexpr Clause kReadingClauses[] = {
                 "firmware, vector 68", Profiles::kFirmware},
     from(kFresh, Hazard::kState, "260 bytes, and the shaft turns between.",
          [](NodeBench& node) {
-           node.turn(1000);
-           node.send(kReadAngle);
-           const auto first = node.read_on(4);
+           const auto first = turned_angle(node);
            const auto bytes = node.read_around(node.address(), 260, [&] { node.turn(1000); });
            node.about("the first four of 260 bytes");
            node.expect_same(Bytes{bytes}.first(std::min<std::size_t>(bytes.size(), 4)), first);

@@ -56,6 +56,11 @@ constexpr Case state(std::string_view rule, CaseBody run, Start start) {
 
 constexpr Start kCalibrated = Start::kDisabled;
 
+void enable_and_forget(NodeBench& node) {
+  node.send(kVoltage, 0.0F);
+  node.send(kCalibrationUnknown);
+}
+
 constexpr Clause kStatusClauses[] = {
     must("morap.status.at-boot", "After power-on the motor status is 3.",
          "document, motor status; vector 2"),
@@ -168,8 +173,7 @@ constexpr Clause kStatusClauses[] = {
     state(
         "Enabled with 0 V, then 31.",
         [](NodeBench& node) {
-          node.send(kVoltage, 0.0F);
-          node.send(kCalibrationUnknown);
+          enable_and_forget(node);
           node.expect_status(kNeedsCalibration);
         },
         kCalibrated),
@@ -179,8 +183,7 @@ constexpr Clause kStatusClauses[] = {
     state(
         "Enabled, 31, 16.",
         [](NodeBench& node) {
-          node.send(kVoltage, 0.0F);
-          node.send(kCalibrationUnknown);
+          enable_and_forget(node);
           node.send(kCalibrateZero);
           node.expect_status(MotorStatus::kDisabled);
         },

@@ -63,8 +63,7 @@ constexpr Clause kDemoClauses[] = {
          "firmware: not guarded by the flag", Profiles::kFirmware),
     from(kFresh, Hazard::kMove, "Joints move with code 69 after disable.",
          [](BoardBench& board) {
-           board.spoil();
-           board.act(with_code(kDisable));
+           spoil_disabled(board);
            board.about("code 69 while disabled");
            expect_moved(board, run(board, with_code(kDemo), 500ms));
          }),
@@ -169,8 +168,7 @@ constexpr Clause kDemoClauses[] = {
          Profiles::kFirmware),
     from(kFresh, Hazard::kMove, "Six codes in turn stop the demonstration of a disabled board.",
          [](BoardBench& board) {
-           board.spoil();
-           board.act(with_code(kDisable));
+           spoil_disabled(board);
            for (const int code : {42, 100, 102, 103, 123, 156}) {
              board.keep_asking(with_code(kDemo), 300ms);
              board.act(with_code(code));

@@ -238,8 +238,7 @@ constexpr Clause kIoClauses[] = {
     from(kEnabled, Hazard::kMove,
          "A disabled board can be enabled and jogs while the stop is pressed.",
          [](BoardBench& board) {
-           board.spoil();
-           board.act(with_code(kDisable));
+           spoil_disabled(board);
            press(board);
            board.act(with_code(kEnable));
            expect_jog(board, "a jog after enable, the emergency stop being pressed");

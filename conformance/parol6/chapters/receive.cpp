@@ -37,6 +37,14 @@ void send_cut(BoardBench& board, std::size_t size) {
   board.about(fmt::format("the first frame behind one cut after {} bytes", size));
 }
 
+template <class Look>
+void after_each_cut(BoardBench& board, Look look) {
+  for (const auto size : kCuts) {
+    send_cut(board, size);
+    look(size);
+  }
+}
+
 constexpr Clause kReceiveClauses[] = {
     must("parol6.receive.any-length",
          "Any byte after three start bytes is believed to be the length, FF included, and a frame "
@@ -209,24 +217,20 @@ constexpr Clause kReceiveClauses[] = {
          "firmware, vector R9", Profiles::kFirmware, "parol6.receive.cut-harmless"),
     look("A frame cut short takes the next one with it, and no more.",
          [](BoardBench& board) {
-           for (const auto size : kCuts) {
-             send_cut(board, size);
+           after_each_cut(board, [&](std::size_t size) {
              board.expect_silence(encode(idle()));
              for (const auto* which : {"second", "third"}) {
                board.about(fmt::format("the {} frame behind one cut after {} bytes", which, size));
                board.expect_answer(encode(idle()));
              }
-           }
+           });
          }),
 
     should("parol6.receive.cut-harmless", "A frame cut short does not take the next one with it.",
            "document is silent; our choice", Profiles::kDocumented, "parol6.receive.cut-short"),
     look("The frame behind one cut short is answered.",
          [](BoardBench& board) {
-           for (const auto size : kCuts) {
-             send_cut(board, size);
-             board.expect_answer(encode(idle()));
-           }
+           after_each_cut(board, [&](std::size_t) { board.expect_answer(encode(idle())); });
          }),
 };
 

@@ -80,7 +80,9 @@ bool has_aspect(const Dissection& dissection, const Subject& subject) {
 TEST(Suites, SpeakOfMessagesAndFieldsThatThereAre) {
   for (const auto& device : cli::shipped_devices()) {
     const auto suite = device.suite();
-    if (device.name != "demo") EXPECT_FALSE(suite.subjects.empty()) << device.name;
+    if (device.name != "demo") {
+      EXPECT_FALSE(suite.subjects.empty()) << device.name;
+    }
     for (const auto& subject : suite.subjects) {
       EXPECT_NE(find_requirement(suite, subject.requirement), nullptr) << subject.requirement;
       EXPECT_TRUE(has_aspect(device.dissection(), subject))

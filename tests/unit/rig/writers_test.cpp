@@ -200,6 +200,7 @@ const std::vector<Step>& steps() {
         {"harness/rig/guarded_ports.cpp", "is the guard"},
         {"harness/rig/guarded_ports.hpp", "is the guard"},
         {"harness/rig/logged_ports.cpp", "passes on what it is given"},
+        {"harness/rig/logged_ports.hpp", "passes on what it is given"},
         {"harness/rig/rig.cpp", "puts impairments around it, outside the guard"},
         {"harness/rig/stoppable_ports.cpp", "passes on what it is given"},
         {"conformance/kinovazed/server_bench.cpp", "of the rig that it was given"},
