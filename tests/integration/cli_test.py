@@ -108,7 +108,7 @@ def rows(folder):
         ("emulate parol6 --set fault=zero:nothing", "", 2, ["!fields: start"]),
         ("trace verify /nonexistent", "", 2, ["!/nonexistent"]),
         ("emulate morap --set nodes=x", "", 2, ["!nodes=x"]),
-        ("emulate morap --pty", "", 2, ["!a bus takes --set, --bus, --json and --check"]),
+        ("emulate morap --pty", "", 2, ["!a bus takes --set, --bus, --usb, --usbip, --json and --check"]),
         ("i2c read 0x80 1 --target emulated:", "", 2, ["!ADDRESS"]),
         ("i2c write 0x12 1 --target emulated:", "", 2, ["!missing its partner"]),
         ("i2c scan --target tcp:localhost:1", "", 2, ["!i2c:/dev/i2c-N"]),
