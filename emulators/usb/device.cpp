@@ -218,15 +218,15 @@ std::optional<ControlReply> Device::standard(const Setup& setup) {
 }
 
 std::optional<ControlReply> Device::descriptor(const Setup& setup) const {
-  enum Type : std::uint8_t { kDevice = 1, kConfig = 2, kString = 3 };
+  enum Wanted : std::uint8_t { kOfDevice = 1, kOfConfiguration = 2, kOfString = 3 };
   if ((setup.type & kRecipient) != kToDevice) return std::nullopt;
   switch (setup.value >> 8U) {
-    case kDevice:
+    case kOfDevice:
       return ControlReply{device_descriptor(description())};
-    case kConfig:
+    case kOfConfiguration:
       if (low_byte(setup.value) != 0) return std::nullopt;
       return ControlReply{configuration_descriptor(description())};
-    case kString: {
+    case kOfString: {
       auto text = string_descriptor(description(), low_byte(setup.value));
       if (!text) return std::nullopt;
       return ControlReply{*std::move(text)};
