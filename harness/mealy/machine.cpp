@@ -46,7 +46,7 @@ std::optional<Word> difference(const Machine& one, std::size_t from_one, const M
     for (std::size_t i = 0; i < one.letters.size(); ++i) {
       const auto& left = one.states[at.one].steps[i];
       const auto& right = other.states[at.other].steps[i];
-      auto word = joined(at.word, {static_cast<Letter>(i)});
+      auto word = joined(at.word, Word{static_cast<Letter>(i)});
       if (left.said != right.said) return word;
       if (seen.emplace(left.to, right.to).second) {
         waiting.push_back({left.to, right.to, std::move(word)});

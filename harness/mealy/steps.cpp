@@ -60,7 +60,7 @@ ToldMachine told(const Drawing& drawing) {
       told.notes[from].push_back(std::move(line));
       continue;
     }
-    const auto fits = [&, from = from, to = to, is_marked = is_marked](const Arrow& arrow) {
+    const auto fits = [&](const Arrow& arrow) {
       return arrow.from == from && arrow.to == to && arrow.is_marked == is_marked;
     };
     auto arrow = std::ranges::find_if(told.arrows, fits);
