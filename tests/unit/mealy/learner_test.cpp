@@ -57,7 +57,7 @@ TEST(Learner, LearnsMachinesDrawnAtRandom) {
 
 TEST(Learner, GivesNoMoreLettersThanItMay) {
   const auto machine = drawn_machine(3, 12, 6, 2);
-  for (const std::size_t most : {0, 10, 100, 300}) {
+  for (const std::size_t most : {0U, 10U, 100U, 300U}) {
     Owner owner{machine};
     const auto learned = learn(owner, machine.letters, {.most_letters = most}).value();
     EXPECT_LE(learned.asked.letters, most);

@@ -47,7 +47,7 @@ std::vector<std::string> names_of(const Lesson& lesson) {
 }
 
 void expect_documented(std::string_view device, std::string_view machine, std::size_t states) {
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const auto lesson = learn(device, machine, {}, seed);
     EXPECT_TRUE(lesson.learned.is_settled) << machine;
     EXPECT_EQ(lesson.learned.machine.states.size(), states) << machine;
