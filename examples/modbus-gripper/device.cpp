@@ -8,7 +8,6 @@
 #include "harness/console/generic.hpp"
 #include "harness/latency/generic_probe.hpp"
 #include "judge.hpp"
-#include "machine.hpp"
 #include "suite.hpp"
 
 namespace gripper {
@@ -56,12 +55,6 @@ void seal(std::span<std::byte> message) {
   end[1] = static_cast<std::byte>(crc >> 8U);
 }
 
-/// Its letters are too short for a slow line.
-std::span<const campaign::Learnable> machines_at(unsigned baud) {
-  if (baud != kUsualBaud) return {};
-  return machines();
-}
-
 template <unsigned baud>
 cli::Device device(std::string_view name) {
   return {.name = name,
@@ -78,7 +71,7 @@ cli::Device device(std::string_view name) {
           .suite = suite,
           .mutants = mutants,
           .replay = {.run = replay},
-          .fuzz = {.seal = seal, .machines = machines_at(baud)},
+          .fuzz = {.seal = seal},
           .watch_rate = 2};
 }
 

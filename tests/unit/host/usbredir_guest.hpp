@@ -102,9 +102,10 @@ class UsbredirGuest {
   std::vector<std::byte> outgoing;
   int connections = 0;
   int disconnections = 0;
-  usb_redir_device_connect_header device{};
-  usb_redir_interface_info_header interfaces{};
-  usb_redir_ep_info_header endpoints{};
+  // They are packed, and tests bind references to their members.
+  alignas(8) usb_redir_device_connect_header device{};
+  alignas(8) usb_redir_interface_info_header interfaces{};
+  alignas(8) usb_redir_ep_info_header endpoints{};
   std::map<std::uint64_t, std::vector<Answer>> answers;
   std::vector<std::string> interrupts;
 
