@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/i2c/bus.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace armjig::i2c {
@@ -14,6 +16,8 @@ constexpr int kRecoveryClocks = 9;
 }  // namespace
 
 static_assert(EmulatedBus<Bus>);
+
+std::string name_at(std::uint8_t address) { return fmt::format("0x{:02X}", address); }
 
 BusReply Bus::start(Instant time, std::uint8_t address, bool is_read) {
   time = when_clock_is_free(time);
@@ -76,15 +80,27 @@ void Bus::advance_to(Instant time) {
 }
 
 bool Bus::set_input(Instant time, std::string_view name, std::int64_t value) {
+  if (const auto found = named(name)) {
+    return devices_[found->first].set_input(time, found->second, value);
+  }
   return std::ranges::any_of(
       devices_, [&](BusDevice& device) { return device.set_input(time, name, value); });
 }
 
 std::optional<std::int64_t> Bus::observe(Instant time, std::string_view name) {
+  if (const auto found = named(name)) return devices_[found->first].observe(time, found->second);
   for (auto& device : devices_) {
     if (const auto seen = device.observe(time, name)) return seen;
   }
   return std::nullopt;
+}
+
+std::optional<std::pair<std::size_t, std::string_view>> Bus::named(std::string_view name) const {
+  const auto dot = name.find('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  const auto found = std::ranges::find(names_, name.substr(0, dot));
+  if (found == names_.end()) return std::nullopt;
+  return std::pair{static_cast<std::size_t>(found - names_.begin()), name.substr(dot + 1)};
 }
 
 std::optional<Trouble> Bus::take_trouble(Trouble::Kind kind) {

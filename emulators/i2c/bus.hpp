@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -138,6 +139,9 @@ struct Trouble {
   int clocks = 1;
 };
 
+/// `0x12`.
+[[nodiscard]] std::string name_at(std::uint8_t address);
+
 /// A bus at 100 kHz with its devices: who answers, how long everything takes, what can go wrong
 /// with two wires. Devices with the same address answer together: one acknowledgement is enough, a
 /// zero bit wins.
@@ -146,10 +150,12 @@ class Bus {
   static constexpr Duration kBit = std::chrono::microseconds{10};
   static constexpr Duration kByte = 9 * kBit;
 
-  /// Its number is that of `device`.
+  /// Its number is that of `device`. `name`: how inputs are told from those of others, usually
+  /// `name_at` the address that it has now.
   template <EmulatedBusDevice Device>
-  std::size_t attach(Device device) {
+  std::size_t attach(Device device, std::string name = {}) {
     devices_.emplace_back(std::move(device));
+    names_.push_back(std::move(name));
     return devices_.size() - 1;
   }
   /// Requires a device of that type with that number.
@@ -171,18 +177,23 @@ class Bus {
   /// Nine clocks and a stop, which free a data line that a device holds in the middle of a byte.
   BusReply recover(Instant time);
   void advance_to(Instant time);
-  /// Of the first device that has such an input. False: none has.
+  /// Of the device that the name begins with, as in `0x12.power`, else of the first one that has
+  /// such an input. False: none has.
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
-  /// At the first device that has such a thing.
+  /// As for `set_input`. None: no device has such a thing.
   [[nodiscard]] std::optional<std::int64_t> observe(Instant time, std::string_view name);
 
  private:
+  /// The device that the name begins with, and what follows there.
+  [[nodiscard]] std::optional<std::pair<std::size_t, std::string_view>> named(
+      std::string_view name) const;
   [[nodiscard]] std::optional<Trouble> take_trouble(Trouble::Kind kind);
   [[nodiscard]] BusReply finish(Instant end, BusReply::Outcome outcome, std::byte byte = {});
   [[nodiscard]] Instant when_clock_is_free(Instant time) const noexcept;
   void leave_devices(Instant time);
 
   std::vector<BusDevice> devices_;
+  std::vector<std::string> names_;      ///< of them; empty: it has none
   std::vector<std::size_t> addressed_;  ///< who takes part in the transaction
   std::vector<Trouble> troubles_;
   std::uint8_t address_ = 0;

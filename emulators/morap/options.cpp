@@ -194,8 +194,10 @@ Outcome<BusSettings> read_bus(const DeviceOptions& options, const std::string& w
 
 i2c::Bus make_bus(const BusSettings& settings) {
   i2c::Bus bus;
-  for (const auto& node : settings.nodes) bus.attach(make_node(node));
-  for (const auto& pen : settings.pens) bus.attach(Pen{pen});
+  for (const auto& node : settings.nodes) {
+    bus.attach(make_node(node), i2c::name_at(node_address(node.id)));
+  }
+  for (const auto& pen : settings.pens) bus.attach(Pen{pen}, i2c::name_at(pen.address));
   for (const auto& thermometer : settings.thermometers) bus.attach(thermometer);
   return bus;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <utility>
 #include <variant>
 
 namespace armjig::parol6::emulation {
@@ -15,6 +17,9 @@ constexpr std::array kInputs{
     DeviceInput{"position.jN", "steps: puts the axis there, behind the board's back"},
     DeviceInput{"switch.jN", "its limit switch: 0 works, 1 stuck closed, 2 stuck open"},
     DeviceInput{"between-fingers", "where closing fingers meet something, 0 to 255; -1: nothing"},
+    DeviceInput{"can.data",
+                "eight bytes, the first one highest: the data of what `can.frame` sends"},
+    DeviceInput{"can.frame", "16 times an identifier plus a count of bytes: the board gets it"},
     DeviceInput{"power", "any: off and on, board and gripper"},
 };
 
@@ -26,6 +31,21 @@ std::optional<std::size_t> joint_of(std::string_view name, std::string_view pref
   if (!name.starts_with(prefix) || name.size() != prefix.size() + 1) return std::nullopt;
   const auto joint = static_cast<std::size_t>(name.back() - '1');
   return joint < kJointCount ? std::optional{joint} : std::nullopt;
+}
+
+/// What `can.frame` and `can.data` mean; none: there is no such frame.
+std::optional<CanFrame> frame_of(std::int64_t value, std::uint64_t data) noexcept {
+  constexpr std::int64_t kSizes = 16;
+  constexpr std::int64_t kIdentifiers = 0x800;
+  CanFrame frame;
+  if (value < 0 || value >= kIdentifiers * kSizes) return std::nullopt;
+  if (std::cmp_greater(value % kSizes, frame.data.size())) return std::nullopt;
+  frame.id = static_cast<std::uint16_t>(value / kSizes);
+  frame.size = static_cast<std::uint8_t>(value % kSizes);
+  for (std::size_t i = 0; i < frame.size; ++i) {
+    frame.data[i] = static_cast<std::byte>(data >> (56 - 8 * i) & 0xFFU);
+  }
+  return frame;
 }
 
 bool set_in_plant(Plant& plant, std::string_view name, std::int64_t value) noexcept {
@@ -120,10 +140,24 @@ bool Arm::set_input(Instant time, std::string_view name, std::int64_t value) {
     touch_gripper(time, fingers);
     return true;
   }
+  if (name == "can.data") {
+    can_data_ = static_cast<std::uint64_t>(value);
+    return true;
+  }
+  if (name == "can.frame") {
+    const auto frame = frame_of(value, can_data_);
+    if (frame) receive_can(time, *frame);
+    return frame.has_value();
+  }
   auto plant = board_.plant();
   if (!set_in_plant(plant, name, value)) return false;
   touch(time, [&](Plant& touched) { (void)set_in_plant(touched, name, value); });
   return true;
+}
+
+void Arm::receive_can(Instant time, const CanFrame& frame) {
+  advance_before(time);
+  board_.receive_can(time, frame);
 }
 
 void Arm::reboot(Instant time) {

@@ -53,6 +53,9 @@ class Arm : public Sending<SentBytes> {
   /// The same for what the fingers meet. Without a gripper nothing happens.
   void touch_gripper(Instant time, const GripperPlant& plant);
 
+  /// A frame of somebody else on the CAN. The gripper does not listen to it.
+  void receive_can(Instant time, const CanFrame& frame);
+
   /// What a person beside the arm can do, by `arm_inputs`. False: there is no such thing, or it
   /// does not take that value.
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
@@ -69,6 +72,7 @@ class Arm : public Sending<SentBytes> {
 
   Board board_;
   std::optional<Gripper> gripper_;
+  std::uint64_t can_data_{};  ///< as the input `can.data` has it
 };
 
 static_assert(EmulatedStream<Arm>);

@@ -28,6 +28,11 @@ bool is_border(const KeptRecord& record) {
   return what == "connect" || what == "disconnect";
 }
 
+/// Not what else was done to the device.
+bool is_on_the_link(const KeptRecord& record) {
+  return record.kind == LinkKind::kEvents ? is_border(record) : record.kind != LinkKind::kCan;
+}
+
 KeptRecord border(Instant time, std::uint32_t id, std::string_view what, std::string_view text) {
   return {.time = time,
           .kind = LinkKind::kEvents,
@@ -99,7 +104,7 @@ class Talk {
   Talk(std::vector<KeptRecord> records, const DeviceRole& role) : role_{role} {
     HostWords words{role.make_dissector};
     for (auto& record : records) {
-      if (record.kind == LinkKind::kEvents && !is_border(record)) {
+      if (!is_on_the_link(record)) {
         leave_out(record);
         continue;
       }
@@ -234,7 +239,7 @@ class Talk {
                   (role_.speed == 1 ? now - anchor_ : std::chrono::duration_cast<Duration>(since));
     said_->actual.push_back(std::move(record));
   }
-  void leave_out(const KeptRecord& record) { ++said_->left_out[what_of(record)]; }
+  void leave_out(const KeptRecord& record) { ++said_->left_out[label_of(record)]; }
 
   DeviceRole role_;
   std::vector<TalkStep> steps_;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "harness/core/hex.hpp"
 #include "harness/core/text_member.hpp"
 #include "harness/link/session_port.hpp"
 
@@ -47,16 +48,28 @@ std::string name_of_event(const OrderedJson& json) {
   return name.empty() ? text_member(json, "op") : name;
 }
 
+/// Without the bits of which the recording says that nobody can know them.
+KeptRecord masked(KeptRecord record) {
+  const auto mask = from_hex(text_in(record, "mask"));
+  if (!mask) return record;
+  for (std::size_t i = 0; i < std::min(mask->size(), record.bytes.size()); ++i) {
+    record.bytes[i] &= (*mask)[i];
+  }
+  return record;
+}
+
 /// Times of the recording on the clock of the port. A port whose clock is already beyond the first
 /// record begins with that.
 class Clock {
  public:
-  Clock(Instant now, Records records, double speed) : speed_{speed} {
+  Clock(Instant now, Records records, double speed) : begin_{now}, speed_{speed} {
     if (!records.empty()) base_ = std::max(Duration{}, now - due(records.front().time));
   }
   [[nodiscard]] Instant due(Instant recorded) const {
     return Instant{base_ + scaled(recorded.time_since_epoch(), 1 / speed_)};
   }
+  /// Before the port was opened: not to be waited for, not even on virtual time.
+  [[nodiscard]] bool is_over(Instant recorded) const { return due(recorded) < begin_; }
   [[nodiscard]] Instant recorded(Instant now) const {
     return Instant{scaled(now.time_since_epoch() - base_, speed_)};
   }
@@ -66,6 +79,7 @@ class Clock {
     if (factor == 1) return time;  // to the nanosecond
     return std::chrono::duration_cast<Duration>(std::chrono::duration<double>{time} * factor);
   }
+  Instant begin_;
   double speed_;
   Duration base_{};
 };
@@ -92,30 +106,20 @@ class Playing {
   /// What was done beside the link. Answers false if nothing of it can be done there.
   bool touch(Endpoint& port, const KeptRecord& record) {
     bool is_done = false;
-    for (const auto& [name, value] : touches_of(details_of(record))) {
+    for (const auto& [name, value] : touches_of(record, touches_of_)) {
       if (port.touch(name, value) || (by_hand_ && by_hand_(name, value))) is_done = true;
     }
     if (is_done) ++played_.sent;
     return is_done;
   }
   void leave_out(const std::string& what) { ++played_.left_out[what]; }
-  void leave_out(const KeptRecord& record) {
-    leave_out(record.kind == LinkKind::kEvents ? name_of_event(details_of(record))
-                                               : std::string{to_string(record.kind)});
-  }
+  void leave_out(const KeptRecord& record) { leave_out(label_of(record)); }
 
   Clock clock_;
   Played played_;
 
  private:
-  [[nodiscard]] DeviceTouches touches_of(const OrderedJson& event) const {
-    if (name_of_event(event) == "input" && event.contains("name")) {
-      return {{text_member(event, "name"), number_of<std::int64_t>(event, "value", 0)}};
-    }
-    return touches_of_ == nullptr ? DeviceTouches{} : touches_of_(event.dump());
-  }
-
-  DeviceTouches (*touches_of_)(std::string_view event);
+  TouchesOf touches_of_;
   const std::function<bool(std::string_view, std::int64_t)>& by_hand_;
 };
 
@@ -133,12 +137,12 @@ class StreamPlaying : public Playing {
       ++played_.sent;
       return port_.write(record.bytes);
     }
-    const bool is_event = record.kind == LinkKind::kEvents;
-    if (!is_event || !touch(port_, record)) leave_out(record);
+    if (!touch(port_, record)) leave_out(record);
     return {};
   }
 
   Result<void> listen_until(Instant recorded) {
+    if (clock_.is_over(recorded)) return {};
     std::array<std::byte, 4096> buffer;
     for (;;) {
       const auto size = port_.read(buffer, clock_.due(recorded));
@@ -309,6 +313,8 @@ class BusPlaying : public Playing {
   Result<void> play(const KeptRecord& record) {
     auto details = details_of(record);
     if (record.kind != LinkKind::kBus) {
+      // Whole transactions end before it: nothing comes between their parts.
+      if (auto passed = pass_all(true); !passed) return passed;
       wait_until(record.time);
       if (name_of_event(details) == "recover") {
         ++played_.sent;
@@ -325,12 +331,13 @@ class BusPlaying : public Playing {
         std::max<std::size_t>(record.bytes.size(), number_of<std::uint16_t>(details, "n", 0));
     parts_.push_back({std::move(wanted), details, std::vector<std::byte>(size)});
     const auto stop = details.find("stop");
-    if (stop != details.end() && *stop == false) return {};
-    return pass_all();
+    const bool is_last = stop == details.end() || *stop != false;
+    return is_last || port_.has_operations() ? pass_all(is_last) : Result<void>{};
   }
 
   Result<void> listen_until(Instant recorded) {
-    auto passed = pass_all();
+    auto passed = pass_all(true);
+    if (std::exchange(is_open_, false)) (void)port_.stop();
     wait_until(recorded);
     return passed;
   }
@@ -342,8 +349,10 @@ class BusPlaying : public Playing {
     std::vector<std::byte> read;
     std::string acks{};
     std::string error{};
+    bool is_unseen = false;  ///< it passed, and the bus does not show what came
 
     [[nodiscard]] bool is_read() const { return record.direction == Direction::kFromDevice; }
+    [[nodiscard]] bool was_refused() const { return text_member(details, "ack").ends_with('N'); }
     [[nodiscard]] BusAddress address() const { return {static_cast<std::uint8_t>(record.id)}; }
   };
 
@@ -352,22 +361,22 @@ class BusPlaying : public Playing {
     if (port_.now() < due) port_.wait_until(due);
   }
 
-  /// The transaction that is complete now.
-  Result<void> pass_all() {
+  /// The transaction that is complete now; by operations, its next part.
+  Result<void> pass_all(bool is_last) {
     auto parts = std::exchange(parts_, {});
     if (parts.empty()) return {};
-    for (const auto& part : parts) played_.expected.push_back(part.record);
-    Result<void> passed;
-    if (port_.has_operations()) {
-      for (auto& part : parts) {
-        if (passed) passed = pass_by_operations(part, &part == &parts.back());
-      }
-    } else {
-      passed = pass_whole(parts);
-    }
-    for (auto& part : parts) {
+    const auto recorded = parts;
+    const auto passed =
+        port_.has_operations() ? pass_by_operations(parts.front(), is_last) : pass_whole(parts);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      auto& part = parts[i];
       ++played_.sent;
-      played_.actual.push_back(said_of(std::move(part)));
+      if (part.is_unseen) {
+        leave_out("read before a refusal");
+        continue;
+      }
+      played_.expected.push_back(masked(recorded[i].record));
+      played_.actual.push_back(masked(said_of(std::move(part))));
     }
     return passed;
   }
@@ -378,6 +387,7 @@ class BusPlaying : public Playing {
     const auto begin = port_.now();
     auto done = operate(part);
     part.record.time = begin;
+    is_open_ = !is_last;
     if (is_last) (void)port_.stop();
     return note(part, done);
   }
@@ -427,6 +437,7 @@ class BusPlaying : public Playing {
         part.acks = std::string(1 + (part.is_read() ? 0 : part.record.bytes.size()), 'A');
       } else {
         part.read.clear();
+        part.is_unseen = done && part.is_read() && parts.size() > 1 && !part.was_refused();
         if (done) part.acks = refusal_of(part, *done, parts.size());
         passed = note(part, done ? Result<void>{} : tl::unexpected{done.error()});
       }
@@ -472,6 +483,7 @@ class BusPlaying : public Playing {
 
   BusPort& port_;
   std::vector<Part> parts_;
+  bool is_open_ = false;  ///< a transaction, of which not all was played
 };
 
 template <class Kind>

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "emulators/replay/kept_record.hpp"
-#include "emulators/replay/replay.hpp"
+#include "emulators/replay/touches.hpp"
 #include "harness/link/bus_port.hpp"
 #include "harness/link/session_source.hpp"
 #include "harness/link/stream_port.hpp"
@@ -22,10 +22,8 @@
 namespace armjig {
 
 struct PlayHow {
-  double speed = 1;  ///< 2: in half the time; what is kept has the times of the recording
-  /// What lines beside the link mean (`Replay::touches_of`); nullptr: only `input` lines are
-  /// played.
-  DeviceTouches (*touches_of)(std::string_view event){};
+  double speed = 1;        ///< 2: in half the time; what is kept has the times of the recording
+  TouchesOf touches_of{};  ///< what was done beside the link
   /// On a stream, what the host sent leaves so much earlier: what was recorded of one that works in
   /// passes was there when the device looked at that moment, and what `--capture` wrote came just
   /// after it.

@@ -45,6 +45,10 @@ std::string what_of(const KeptRecord& event) {
   return name.empty() ? text_in(event, "op") : name;
 }
 
+std::string label_of(const KeptRecord& record) {
+  return record.kind == LinkKind::kEvents ? what_of(record) : std::string{to_string(record.kind)};
+}
+
 bool has_stop(const KeptRecord& record) { return member_of(event_of(record), "stop") != false; }
 
 }  // namespace armjig

@@ -50,6 +50,8 @@ struct KeptRecord {
                                      std::int64_t otherwise);
 /// What an event is: `dir`, or `op` of a bus; empty if neither is said.
 [[nodiscard]] std::string what_of(const KeptRecord& event);
+/// `what_of` an event, the kind of link of anything else.
+[[nodiscard]] std::string label_of(const KeptRecord& record);
 /// Of a part of a bus transaction: whether it was the last one.
 [[nodiscard]] bool has_stop(const KeptRecord& record);
 

@@ -315,19 +315,24 @@ Outcome<i2c::Bus> set_up(const Trace& recording) {
   return read_header(recording).map([](const Setups& setups) {
     i2c::Bus bus;
     for (const auto& setup : setups) {
-      setup ? bus.attach(DefectiveNode{*setup, {}}) : bus.attach(Pen{});
+      if (setup) {
+        bus.attach(DefectiveNode{*setup, {}}, i2c::name_at(node_address(setup->eeprom.node)));
+      } else {
+        bus.attach(Pen{}, i2c::name_at(PenSetup{}.address));
+      }
     }
     return bus;
   });
 }
 
-DeviceTouches touches_of(std::string_view event) {
-  const auto what = text_in(event, "op");
-  const auto number = [event](const char* key) { return number_in(event, key, 0); };
-  if (what == "adc") return {{"adc", number("value")}};
-  if (what == "encoder") return {{"encoder", number("delta")}};
-  if (what == "restart") return {{"power", 1}};
-  if (what == "input") return {{"deploy", number("but1")}, {"retract", number("but2")}};
+DeviceTouches touches_of(std::string_view line) {
+  const auto what = text_in(line, "op");
+  const auto number = [line](const char* key) { return number_in(line, key, 0); };
+  const auto of = i2c::name_at(static_cast<std::uint8_t>(number("addr"))) + '.';
+  if (what == "adc") return {{of + "adc", number("value")}};
+  if (what == "encoder") return {{of + "encoder", number("delta")}};
+  if (what == "restart") return {{of + "power", 1}};
+  if (what == "input") return {{of + "deploy", number("but1")}, {of + "retract", number("but2")}};
   return {};
 }
 

@@ -14,8 +14,8 @@ namespace armjig::morap::replay {
 /// The nodes and pens that the header of a recording names, on a fresh bus.
 [[nodiscard]] Outcome<i2c::Bus> set_up(const Trace& recording);
 
-/// As `Replay::touches_of`, of the shaft, the power and the buttons of the only device.
-[[nodiscard]] DeviceTouches touches_of(std::string_view event);
+/// As `Replay::touches_of`, of shafts, power and buttons.
+[[nodiscard]] DeviceTouches touches_of(std::string_view line);
 
 /// Puts the nodes and pens that the header names on a fresh bus, drives it with the operations of
 /// the recording, and answers acknowledgements, bytes read and states of the pen. Bytes that the

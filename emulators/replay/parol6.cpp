@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "emulators/parol6/board.hpp"
+#include "emulators/replay/kept_record.hpp"
 #include "emulators/replay/wrong_key.hpp"
+#include "harness/core/hex.hpp"
 
 namespace armjig::parol6::replay {
 namespace {
@@ -190,6 +192,19 @@ Outcome<DefectiveArm> set_up(const Trace& recording) {
     const ArmOptions arm{.plant = header.plant, .timing = header.timing, .gripper = std::nullopt};
     return DefectiveArm{arm, {}};
   });
+}
+
+DeviceTouches touches_of(std::string_view line) {
+  if (text_in(line, "dir") != "can_to_device") return {};
+  const auto bytes = from_hex(text_in(line, "hex"));
+  if (!bytes || bytes->size() > CanFrame{}.data.size()) return {};
+  std::uint64_t data = 0;
+  for (std::size_t i = 0; i < bytes->size(); ++i) {
+    data |= std::to_integer<std::uint64_t>((*bytes)[i]) << (56 - 8 * i);
+  }
+  const auto size = static_cast<std::int64_t>(bytes->size());
+  return {{"can.data", static_cast<std::int64_t>(data)},
+          {"can.frame", 16 * number_in(line, "id", 0) + size}};
 }
 
 Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Passes::kInClosedForm); }

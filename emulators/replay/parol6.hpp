@@ -12,6 +12,9 @@ namespace armjig::parol6::replay {
 /// CAN.
 [[nodiscard]] Outcome<emulation::DefectiveArm> set_up(const Trace& recording);
 
+/// As `Replay::touches_of`, of frames that others sent on the CAN.
+[[nodiscard]] DeviceTouches touches_of(std::string_view line);
+
 /// Drives a fresh board with the stimulus of a recording, on the plant and the clocks that its
 /// header names, and answers what the board sent. CAN frames are among it only if the recording has
 /// them.

@@ -37,7 +37,7 @@ void RecordedHost::play(const KeptRecord& record) {
   if (!is_by_host(record)) return;
   const bool is_stream = record.kind == LinkKind::kStream;
   advance_to(is_stream ? record.time - lead_ : record.time);
-  if (record.kind == LinkKind::kEvents) {
+  if (record.kind == LinkKind::kEvents || record.kind == LinkKind::kCan) {
     play_event(record);
   } else {
     std::visit([&](const auto& device) { play_on(*device, record); }, device_);
@@ -46,7 +46,8 @@ void RecordedHost::play(const KeptRecord& record) {
 }
 
 void RecordedHost::advance_to(Instant time) {
-  now_ = std::max(now_, time);
+  if (time < now_) return;
+  now_ = time;
   std::visit([this](const auto& device) { device->advance_to(now_); }, device_);
   clear_sent();
 }
@@ -68,7 +69,7 @@ AnyHosted RecordedHost::leave() && {
 }
 
 void RecordedHost::play_on(HostedStream& device, const KeptRecord& record) {
-  if (record.kind == LinkKind::kStream) device.receive(now_, record.bytes);
+  device.receive(now_, record.bytes);
 }
 
 void RecordedHost::play_on(HostedServer& device, const KeptRecord& record) {
@@ -99,14 +100,7 @@ void RecordedHost::play_event(const KeptRecord& record) {
   if (auto* const server = std::get_if<std::unique_ptr<HostedServer>>(&device_)) {
     if (play_border(**server, record)) return;
   }
-  DeviceTouches touches;
-  const auto input = text_in(record, "name");
-  if (what_of(record) == "input" && !input.empty()) {
-    touches.push_back({input, number_in(record, "value", 0)});
-  } else if (touches_of_ != nullptr) {
-    touches = touches_of_('{' + record.details + '}');
-  }
-  for (const auto& [name, value] : touches) {
+  for (const auto& [name, value] : touches_of(record, touches_of_)) {
     std::visit([&](const auto& device) { (void)device->set_input(now_, name, value); }, device_);
   }
 }

@@ -22,8 +22,6 @@ namespace armjig {
 /// know what that is overhears the device.
 class RecordedHost {
  public:
-  using TouchesOf = DeviceTouches (*)(std::string_view event);
-
   /// `touches_of` as in `PlayHow`. `lead`: bytes on a stream leave so much earlier, as there.
   /// A server listens from the beginning.
   RecordedHost(AnyHosted device, TouchesOf touches_of, Duration lead = {});

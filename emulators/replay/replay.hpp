@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "emulators/replay/touches.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/error.hpp"
 
@@ -24,13 +25,6 @@ struct Replayed {
     actual.push_back(std::move(what_is));
   }
 };
-
-/// What was done beside the link, as `set_input` of an emulated device takes it.
-struct DeviceTouch {
-  std::string name;
-  std::int64_t value{};
-};
-using DeviceTouches = std::vector<DeviceTouch>;
 
 /// Where the two first disagree, by the rules that recordings of the device have.
 using Comparison = std::optional<TraceDifference> (*)(const std::vector<TraceEvent>& recorded,
@@ -63,9 +57,8 @@ struct Replay {
   /// The line of a recording that says what the emulator did, one of `Replayed::actual`. `line` is
   /// the recorded one that it answers (`actual.line`; 1 is the header); empty: it stands by itself.
   std::string (*write)(std::string_view line, const TraceEvent& actual) = write_event;
-  /// What a line of its recordings did beside the link (one JSON object); nothing: nothing that an
-  /// input can do. nullptr: only `input` lines do.
-  DeviceTouches (*touches_of)(std::string_view event){};
+  /// What was done beside the link.
+  TouchesOf touches_of{};
   /// Tries it cell by cell on a table of states and commands; nullptr: there are none of the
   /// device. Problems: `kMalformed`; `where` is for messages.
   Outcome<TableVerdict> (*verify_table)(std::string_view text, const std::string& where){};

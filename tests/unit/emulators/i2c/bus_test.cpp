@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "emulators/i2c/thermometer.hpp"
+#include "emulators/morap/defects/defects.hpp"
 #include "emulators/morap/node.hpp"
 #include "emulators/morap/pen.hpp"
 #include "harness/link/emulated_bus_port.hpp"
@@ -54,6 +55,20 @@ class MorapBus : public testing::Test {
 constexpr std::byte kNeedsCalibration{3};
 constexpr std::byte kDisabled{2};
 constexpr std::byte kCalibrate{0x10};
+
+TEST(NamedDevices, GetTheInputsThatAreTheirs) {
+  Bus bus;
+  auto setup = morap::emulation::NodeSetup{.eeprom = morap::emulation::dcx22l()};
+  const auto first = bus.attach(morap::emulation::DefectiveNode{setup, {}}, name_at(0x12));
+  const auto second = bus.attach(morap::emulation::Pen{}, name_at(0x21));
+  EXPECT_EQ(name_at(0x12), "0x12");
+  EXPECT_EQ(std::pair(first, second), (std::pair<std::size_t, std::size_t>(0, 1)));
+  EXPECT_TRUE(bus.set_input(at(1ms), "0x12.power", 1));
+  EXPECT_TRUE(bus.set_input(at(1ms), "0x21.deploy", 1));
+  EXPECT_TRUE(bus.set_input(at(1ms), "deploy", 1)) << "whoever has it";
+  EXPECT_FALSE(bus.set_input(at(1ms), "0x12.deploy", 1)) << "a node has no such button";
+  EXPECT_FALSE(bus.set_input(at(1ms), "0x13.power", 1)) << "nobody is there";
+}
 
 TEST_F(MorapBus, TakesAsLongAsItsBits) {
   const auto took = [this](auto transaction) {

@@ -131,6 +131,16 @@ TEST(Arm, AnswersToItsNodeOnly) {
   EXPECT_EQ(hold(arm, now, 100ms, second).gripper.status, 0xC0);
 }
 
+TEST(Arm, TakesAFrameOfAnotherOnTheCan) {
+  Arm arm;
+  EXPECT_TRUE(arm.set_input(at(1ms), "can.data", 0x0102030400000000));
+  EXPECT_TRUE(arm.set_input(at(1ms), "can.frame", 16 * 120 + 4));
+  EXPECT_TRUE(arm.set_input(at(1ms), "can.frame", 16 * 0x7FF + 8));
+  EXPECT_FALSE(arm.set_input(at(1ms), "can.frame", 16 * 0x800)) << "a standard identifier";
+  EXPECT_FALSE(arm.set_input(at(1ms), "can.frame", 16 * 120 + 9)) << "eight bytes at most";
+  EXPECT_FALSE(arm.set_input(at(1ms), "can.frame", -1));
+}
+
 TEST(Arm, OutlivesTheSleepOfTheDemo) {
   // A host that goes on polling while the board sleeps for 2 s gets all its answers at the end.
   Arm arm{ArmOptions{.timing = {.pass_period = std::chrono::microseconds{20}}}};

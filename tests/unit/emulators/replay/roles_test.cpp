@@ -15,6 +15,8 @@
 #include "emulators/memory/in_memory.hpp"
 #include "emulators/replay/device_role.hpp"
 #include "emulators/replay/host_role.hpp"
+#include "emulators/replay/morap.hpp"
+#include "emulators/replay/parol6.hpp"
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/files/user_file.hpp"
@@ -50,8 +52,9 @@ std::vector<KeptRecord> records_of(const std::string& path, LinkKind kind) {
   auto reader = CaptureReader::open(*std::move(file), path);
   std::vector<KeptRecord> records;
   EXPECT_TRUE(for_each_record(**reader, [&](const CaptureRecord& record) -> Outcome<void> {
-    const bool is_of_it = record.link->kind == kind || record.link->kind == LinkKind::kEvents;
-    if (is_of_it) records.push_back(KeptRecord::from(record));
+    const auto of = record.link->kind;
+    if (of == kind || of == LinkKind::kEvents || of == LinkKind::kCan)
+      records.push_back(KeptRecord::from(record));
     return {};
   }));
   EXPECT_FALSE(records.empty());
@@ -107,6 +110,34 @@ TEST_P(BothRoles, HearFromEachOtherWhatWasRecorded) {
 
 INSTANTIATE_TEST_SUITE_P(Golden, BothRoles, ::testing::Values(kParol6, kKinovazed, kMorap),
                          ::testing::PrintToStringParamName());
+
+/// Everything that was done beside the link is done to the emulated device, too: CAN frames, hands,
+/// power, of the device that is meant.
+template <class SetUp>
+void expect_answers_as_recorded(const Corpus& corpus, SetUp set_up, const PlayHow& how) {
+  const auto files = find_traces({folder_of(corpus)});
+  ASSERT_TRUE(files);
+  EXPECT_GT(files->size(), 80U);
+  for (const auto& file : *files) {
+    SCOPED_TRACE(file);
+    auto device = read_trace(file).and_then(set_up);
+    ASSERT_TRUE(device) << describe(device.error());
+    const auto port = open_in_memory(make_hosted(*std::move(device)));
+    const auto played = play_host(*port, records_of(file, corpus.kind), how);
+    ASSERT_TRUE(played) << describe(played.error());
+    EXPECT_EQ(text_of(played->actual), text_of(played->expected));
+  }
+}
+
+TEST(HostRole, IsAnsweredByAnEmulatedBoardAsRecorded) {
+  expect_answers_as_recorded(kParol6, parol6::replay::set_up,
+                             {.touches_of = parol6::replay::touches_of, .lead = 1ns});
+}
+
+TEST(HostRole, IsAnsweredByEmulatedNodesAsRecorded) {
+  expect_answers_as_recorded(kMorap, morap::replay::set_up,
+                             {.touches_of = morap::replay::touches_of});
+}
 
 TEST(DeviceRole, WaitsForTheHostAndThenTakesTheTimeThatItTook) {
   const auto records = records_of(folder_of(kParol6) + "/jog_stops_a.jsonl", LinkKind::kStream);
