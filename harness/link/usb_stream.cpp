@@ -62,23 +62,24 @@ Result<AcmFunction> acm_behind(int file) noexcept {
   return *found;
 }
 
-/// By its file alone, past libusb. What came is thrown away, else the answers pile up.
+/// By its file alone, past libusb. What came is thrown away afterwards, when there is an answer: a
+/// read that is broken off upsets some hosts.
 void send_last_bulk(int file, Bytes message) noexcept {
-  constexpr unsigned kReadPatienceMs = 1;
+  constexpr unsigned kReadPatienceMs = 10;
   constexpr unsigned kWritePatienceMs = 50;
   const auto port = acm_behind(file);
   if (!port) return;
+  usbdevfs_bulktransfer write{.ep = port->bulk_out,
+                              .len = static_cast<unsigned>(message.size()),
+                              .timeout = kWritePatienceMs,
+                              .data = const_cast<std::byte*>(message.data())};
+  ::ioctl(file, USBDEVFS_BULK, &write);
   std::array<std::byte, 512> ignored;
   usbdevfs_bulktransfer read{.ep = port->bulk_in,
                              .len = ignored.size(),
                              .timeout = kReadPatienceMs,
                              .data = ignored.data()};
   ::ioctl(file, USBDEVFS_BULK, &read);
-  usbdevfs_bulktransfer write{.ep = port->bulk_out,
-                              .len = static_cast<unsigned>(message.size()),
-                              .timeout = kWritePatienceMs,
-                              .data = const_cast<std::byte*>(message.data())};
-  ::ioctl(file, USBDEVFS_BULK, &write);
 }
 
 std::array<std::uint8_t, 7> line_coding(const SerialLine& line) {
@@ -213,20 +214,33 @@ class UsbStream final : public StreamPort {
   /// code.
   int begin(const SerialLine& line) {
     if (const int code = tell_state(kHungUp); code < 0) return code;
-    while (auto* one = reads_.idle()) {
-      if (const int code = ask(*one); code != 0) return code;
-    }
+    if (const int code = keep_reading(); code != 0) return code;
     if (const int code = tell_line(line); code < 0) return code;
     came_.clear();
     return tell_state(kReadyToTalk);
   }
 
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    return Lifeline{file_, send_last_bulk, /*is_plain=*/false};
+  }
+  [[nodiscard]] Instant now() const override { return clock_.now(); }
+
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
+    if (into.empty()) return 0;
+    while (came_.empty()) {
+      if (lost_) return tl::unexpected{*lost_};
+      if (!handle_events(deadline)) return 0;
+    }
+    const auto size = came_.take(into);
+    if (const int code = lost_ ? 0 : keep_reading(); code != 0) lose(error_from_libusb(code));
+    return size;
+  }
+
   Result<void> write(Bytes bytes) override {
     handle_events(now());
-    while (!bytes.empty()) {
+    while (!bytes.empty() && !lost_) {
       auto* const one = next_write();
-      if (lost_) return tl::unexpected{*lost_};
-      if (one == nullptr) return fail(ErrorCode::kTimedOut);
+      if (one == nullptr) return tl::unexpected{lost_.value_or(Error{ErrorCode::kTimedOut})};
       const auto size = std::min(bytes.size(), one->buffer.size());
       std::copy_n(bytes.begin(), size, one->buffer.begin());
       const int code = writes_.submit(*one, device_.handle.get(), port_.bulk_out, size);
@@ -237,27 +251,15 @@ class UsbStream final : public StreamPort {
     return {};
   }
 
-  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
-    if (into.empty()) return 0;
-    while (came_.empty()) {
-      if (lost_) return tl::unexpected{*lost_};
-      if (!handle_events(deadline)) return 0;
-    }
-    const auto size = came_.take(into);
-    while (!lost_ && came_.size() < kMostUnreadFromUsb) {
-      auto* const one = reads_.idle();
-      if (one == nullptr) break;
-      if (const int code = ask(*one); code != 0) lose(error_from_libusb(code));
-    }
-    return size;
-  }
-
-  [[nodiscard]] Instant now() const override { return clock_.now(); }
-  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
-    return Lifeline{file_, send_last_bulk, /*is_plain=*/false};
-  }
-
  private:
+  /// Unless nobody takes what comes. Answers libusb's code.
+  int keep_reading() {
+    auto* one = reads_.idle();
+    for (; one != nullptr && came_.size() < kMostUnreadFromUsb; one = reads_.idle()) {
+      if (const int code = ask(*one); code != 0) return code;
+    }
+    return 0;
+  }
   int ask(BulkQueue::One& one) {
     return reads_.submit(one, device_.handle.get(), port_.bulk_in, one.buffer.size());
   }
@@ -379,7 +381,7 @@ tl::unexpected<Problem> problem_of_line(int code, const std::string& where,
 
 }  // namespace
 
-Outcome<std::unique_ptr<StreamPort>> open_usb_stream(std::string_view address, SerialLine usual) {
+Outcome<std::unique_ptr<StreamPort>> open_usb_stream(const std::string& address, SerialLine usual) {
   const auto where = fmt::format("usb:{}", address);
   const auto place = parse_serial_address(address, usual);
   const auto choice = place ? parse_usb_choice(place->path) : fail(ErrorCode::kBadValue);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
+#include <string>
 
 #include "harness/core/error.hpp"
 #include "harness/link/serial_line.hpp"
@@ -23,7 +23,7 @@ namespace armjig {
 ///
 /// Problems: those of `open_usb`, and `kUnsupported` (no such port, or not with that line),
 /// `kDisconnected`.
-[[nodiscard]] Outcome<std::unique_ptr<StreamPort>> open_usb_stream(std::string_view address,
+[[nodiscard]] Outcome<std::unique_ptr<StreamPort>> open_usb_stream(const std::string& address,
                                                                    SerialLine usual = {});
 
 }  // namespace armjig

@@ -76,13 +76,16 @@ add_test(NAME soak.trace
                  ${PROJECT_SOURCE_DIR}/captures/parol6/random_30s_a.jsonl)
 set_tests_properties(soak.trace PROPERTIES LABELS soak TIMEOUT 7200)
 
-# A cable that is pulled out 200 times, in a guest with a kernel of its own, with its driver and without.
-# Needs what scripts/bootstrap --dev installs.
+# In a guest with a kernel of its own, with its driver and without: a cable that is pulled out 200 times, and
+# a program that is killed while it moves the arm. Needs what scripts/bootstrap --dev installs.
 foreach(target serial:/dev/ttyACM0 usb:0483:5740)
   string(REGEX REPLACE ":.*" "" link ${target})
   add_test(NAME soak.unplug.${link} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
                                             unplug 200 ${target})
-  set_tests_properties(soak.unplug.${link} PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)
+  add_test(NAME soak.killed.${link} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
+                                            killed ${target})
+  set_tests_properties(soak.unplug.${link} soak.killed.${link} PROPERTIES LABELS soak TIMEOUT 7200
+                                                                          SKIP_RETURN_CODE 77)
 endforeach()
 add_test(NAME soak.kernel_round_trip COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
                                              roundtrip)

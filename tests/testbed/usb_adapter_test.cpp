@@ -237,7 +237,7 @@ TEST_F(UsbAdapterBench, RefusesADeviceThatIsNoSuchAdapter) {
 
 // As the board that it is not. Boards: tests/kernel.
 
-Problem problem_of_meeting(std::string_view address) {
+Problem problem_of_meeting(const std::string& address) {
   const auto port = open_usb_stream(address);
   EXPECT_FALSE(port);
   return port ? Problem{} : port.error();
