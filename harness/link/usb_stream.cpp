@@ -120,7 +120,8 @@ class BulkQueue {
   /// What could not be taken back is libusb's for ever.
   ~BulkQueue() {
     for (auto& one : all_) {
-      if (one.is_on_its_way) (void)one.transfer.release();
+      if (!one.is_on_its_way) continue;
+      [[maybe_unused]] const auto* const given_up = one.transfer.release();
     }
   }
 
