@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +58,7 @@ struct EmulateOptions {
   std::uint16_t rfc2217_port = 0;
   std::string usb_socket;
   std::optional<std::uint16_t> usbip_port;
+  std::string usb_serial;  ///< its number; empty: the usual one
   int bus = 1;
   double speed = 1;
   bool wants_json = false;
@@ -67,11 +69,26 @@ struct EmulateOptions {
 };
 
 /// The places where a USB device is wanted.
-std::vector<UsbOptions> usb_of(const EmulateOptions& options, const usb::Identity& identity) {
+std::vector<UsbOptions> usb_of(const EmulateOptions& options, usb::Identity identity) {
+  if (!options.usb_serial.empty()) identity.serial_number = options.usb_serial;
   std::vector<UsbOptions> all;
   if (!options.usb_socket.empty()) all.push_back({identity, UsbredirSocket{options.usb_socket}});
   if (options.usbip_port) all.push_back({identity, UsbipPort{*options.usbip_port}});
   return all;
+}
+
+/// What a string of a USB device may be.
+CLI::Validator usb_text() {
+  return CLI::Validator{[](const std::string& text) -> std::string {
+                          const bool is_printable =
+                              std::ranges::all_of(text, [](char c) { return c > ' ' && c <= '~'; });
+                          const bool fits = text.size() <= usb::kLongestText;
+                          return is_printable && fits
+                                     ? ""
+                                     : fmt::format("has to be at most {} visible ASCII characters",
+                                                   usb::kLongestText);
+                        },
+                        ""};
 }
 
 // How a device is served depends on its kind of port.
@@ -184,6 +201,13 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
                    "as a USB device for 'usbip attach' on this port of 127.0.0.1; 0: any free one")
       ->type_name("PORT")
       ->transform(whole(0, 65535));
+  auto* usb_serial =
+      command
+          ->add_option("--usb-serial", options->usb_serial,
+                       "its serial number on USB, by which boards of a kind are told "
+                       "apart (default: DEVICE-emulated)")
+          ->type_name("TEXT")
+          ->check(usb_text());
   command
       ->add_option("--speed", options->speed,
                    "device time over wall time, 0.001 to 10000 (default: 1)")
@@ -200,11 +224,15 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
                     "say where it listens as one line of JSON; the report of --check too");
   add_capture_options(*command, options->capture);
   add_program_check(*command, options->wants_check, options->files, options->colour);
-  command->callback([options, tcp, rfc2217, bind, devices, &action] {
+  command->callback([options, tcp, rfc2217, bind, usb_serial, devices, &action] {
     options->wants_tcp = tcp->count() > 0;
     options->wants_rfc2217 = rfc2217->count() > 0;
     if (bind->count() > 0 && !options->wants_tcp && !options->wants_rfc2217) {
       throw CLI::RequiresError{"--bind", "--tcp or --rfc2217"};
+    }
+    const bool is_on_usb = !options->usb_socket.empty() || options->usbip_port;
+    if (usb_serial->count() > 0 && !is_on_usb) {
+      throw CLI::RequiresError{"--usb-serial", "--usb or --usbip"};
     }
     action = [options, devices] { return emulate(devices, *options); };
   });

@@ -8,7 +8,8 @@ namespace armjig::cli {
 void add_target_options(CLI::App& app, TargetOptions& options) {
   app.add_option("--target", options.target,
                  "where the device is: emulated:[?OPTION=VALUE&...], serial:PATH[,BAUD], "
-                 "usb:VID:PID, pty:PATH, tcp:HOST:PORT, rfc2217:HOST:PORT, i2c:/dev/i2c-N or "
+                 "serial:VID:PID[:SERIAL], usb:VID:PID[:SERIAL], pty:PATH, tcp:HOST:PORT, "
+                 "rfc2217:HOST:PORT, i2c:/dev/i2c-N or "
                  "i2c-tiny-usb:[SERIAL]")
       ->type_name("TARGET");
   app.add_option("--allow", options.allow,

@@ -36,8 +36,7 @@ void put_interface(std::vector<std::byte>& out, const Interface& interface, std:
 }
 
 std::vector<std::byte> text_descriptor(std::string_view text) {
-  constexpr std::size_t kLongest = 126;
-  const auto shown = text.substr(0, kLongest);
+  const auto shown = text.substr(0, kLongestText);
   std::vector<std::byte> out;
   put(out, {static_cast<unsigned>(2 + 2 * shown.size()), kString});
   for (const char c : shown) {

@@ -17,11 +17,14 @@ inline constexpr std::uint8_t kIn = 0x80;
 
 enum class Speed : std::uint8_t { kLow, kFull };
 
+/// Characters of a text at most.
+inline constexpr std::size_t kLongestText = 126;
+
 /// By which hosts tell a device from others.
 struct Identity {
   std::uint16_t vendor{};
   std::uint16_t product{};
-  std::string manufacturer;  ///< ASCII, at most 126 characters, like the next two
+  std::string manufacturer;  ///< ASCII, at most `kLongestText`, like the next two
   std::string product_name;
   std::string serial_number;
 };

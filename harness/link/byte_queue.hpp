@@ -26,6 +26,7 @@ class ByteQueue {
   void reserve(std::size_t size) { bytes_.reserve(size); }
   void clear() noexcept { bytes_.clear(); }
   [[nodiscard]] bool empty() const noexcept { return bytes_.empty(); }
+  [[nodiscard]] std::size_t size() const noexcept { return bytes_.size(); }
 
  private:
   void drop(std::size_t size) {

@@ -25,7 +25,8 @@ constexpr std::uint16_t kHalfClockUs = 5;      // 100 kHz at most
 constexpr std::byte kPlainTransactions{1};     // in the lowest byte of what it can do
 constexpr std::size_t kLongestMessage = 4096;  // libusb on Linux carries no more at once
 
-constexpr std::array kNumbers{UsbNumbers{0x0403, 0xC631}, UsbNumbers{0x1C40, 0x0534}};
+constexpr UsbId kOfFtdi{0x0403, 0xC631};
+constexpr UsbId kOfEzprototypes{0x1C40, 0x0534};
 
 void send_last_message(int descriptor, Bytes message) noexcept {
   const auto address = static_cast<std::uint16_t>(std::to_integer<unsigned>(message[0]) >> 1U);
@@ -77,7 +78,8 @@ class TinyUsb final : public RealBus {
 
 Outcome<std::unique_ptr<BusPort>> open_i2c_tiny_usb(const std::string& serial_number) {
   const auto where = "i2c-tiny-usb:" + serial_number;
-  auto usb = open_usb_control(kNumbers, serial_number, where);
+  auto usb =
+      open_usb_control({.ids = {kOfFtdi, kOfEzprototypes}, .serial_number = serial_number}, where);
   if (!usb) return tl::unexpected{usb.error()};
   return make_i2c_tiny_usb(*std::move(usb), where);
 }

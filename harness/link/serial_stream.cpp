@@ -150,20 +150,6 @@ int set_up(sp_port* port, const SerialLine& line) noexcept {
 
 }  // namespace
 
-std::string to_string(UsbId id) { return fmt::format("{:04x}:{:04x}", id.vendor, id.product); }
-
-Result<UsbId> parse_usb_id(std::string_view text) {
-  const auto colon = text.find(':');
-  if (colon == std::string_view::npos) return fail(ErrorCode::kBadValue);
-  const auto number = [](std::string_view digits) -> std::optional<std::uint16_t> {
-    return digits.size() > 4 ? std::nullopt : whole_text_as<std::uint16_t>(digits, 16);
-  };
-  const auto vendor = number(text.substr(0, colon));
-  const auto product = number(text.substr(colon + 1));
-  if (!vendor || !product) return fail(ErrorCode::kBadValue);
-  return UsbId{*vendor, *product};
-}
-
 Outcome<std::vector<SerialPort>> list_serial_ports() {
   sp_port** list = nullptr;
   if (const auto answer = ::sp_list_ports(&list); answer != SP_OK) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,25 +9,11 @@
 #include "harness/core/error.hpp"
 #include "harness/link/serial_line.hpp"
 #include "harness/link/stream_port.hpp"
+#include "harness/link/usb_id.hpp"
 
 /// Serial ports of this machine: USB boards, adapters, built-in ones. Not pseudo-terminals, which
 /// have no hardware behind them that could be asked.
 namespace armjig {
-
-/// Who made a USB device, and what it is.
-struct UsbId {
-  std::uint16_t vendor{};
-  std::uint16_t product{};
-
-  friend auto operator<=>(const UsbId&, const UsbId&) = default;
-};
-
-/// `0483:5740`.
-[[nodiscard]] std::string to_string(UsbId id);
-
-/// Reads two numbers of one to four hexadecimal digits with a colon between them. Fails with
-/// `kBadValue`.
-[[nodiscard]] Result<UsbId> parse_usb_id(std::string_view text);
 
 /// A serial port as the operating system describes it; what it does not know is empty.
 struct SerialPort {

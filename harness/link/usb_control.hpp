@@ -6,6 +6,7 @@
 
 #include "harness/core/bytes.hpp"
 #include "harness/core/error.hpp"
+#include "harness/link/usb_id.hpp"
 
 namespace armjig {
 
@@ -37,16 +38,9 @@ class UsbControl {
 /// was claimed belongs to the file. Does nothing but a system call, and may fail.
 void send_last_request(int descriptor, UsbRequest request, Bytes bytes) noexcept;
 
-/// The numbers by which a kind of device is told.
-struct UsbNumbers {
-  std::uint16_t vendor{};
-  std::uint16_t product{};
-};
-
-/// Opens the only device with one of these numbers, or that with a serial number if one is given.
-/// Problems: `kNotFound`, `kBadTarget` (several: names their serial numbers), `kNoPermission`,
-/// `kBusy`, `kSystem`; `where` is what the user wrote.
-[[nodiscard]] Outcome<std::unique_ptr<UsbControl>> open_usb_control(
-    std::span<const UsbNumbers> numbers, std::string_view serial_number, const std::string& where);
+/// Opens the only device that is meant, and claims its first interface. Problems: those of
+/// `open_usb`; `where` is what the user wrote.
+[[nodiscard]] Outcome<std::unique_ptr<UsbControl>> open_usb_control(const UsbChoice& choice,
+                                                                    const std::string& where);
 
 }  // namespace armjig

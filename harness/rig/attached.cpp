@@ -15,6 +15,11 @@ std::string_view device_behind(const SerialPort& port,
   return known == boards.end() ? "" : known->device;
 }
 
+bool is_meant(const SerialPort& port, const UsbChoice& choice) {
+  const bool has_id = port.usb && std::ranges::count(choice.ids, *port.usb) > 0;
+  return has_id && (choice.serial_number.empty() || choice.serial_number == port.serial_number);
+}
+
 std::string target_of(const SerialPort& port) { return "serial:" + port.path; }
 
 std::string describe(const SerialPort& port) {

@@ -22,6 +22,9 @@ struct KnownBoard {
 [[nodiscard]] std::string_view device_behind(const SerialPort& port,
                                              std::span<const KnownBoard> boards) noexcept;
 
+/// Whether it is the port of a board that is meant; `place` is not looked at.
+[[nodiscard]] bool is_meant(const SerialPort& port, const UsbChoice& choice);
+
 /// What `--target` takes for it.
 [[nodiscard]] std::string target_of(const SerialPort& port);
 

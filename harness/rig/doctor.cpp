@@ -34,7 +34,7 @@ ACTION=="remove", GOTO="armjig_end"
 /// Of the device, its vendor and its product.
 constexpr std::string_view kUdevBoard = R"(
 # {0}
-SUBSYSTEM=="usb", ENV{{DEVTYPE}}=="usb_device", ATTR{{idVendor}}=="{1:04x}", ATTR{{idProduct}}=="{2:04x}", ENV{{ID_MM_DEVICE_IGNORE}}="1"
+SUBSYSTEM=="usb", ENV{{DEVTYPE}}=="usb_device", ATTR{{idVendor}}=="{1:04x}", ATTR{{idProduct}}=="{2:04x}", ENV{{ID_MM_DEVICE_IGNORE}}="1", TAG+="uaccess"
 SUBSYSTEM=="tty", KERNEL=="ttyACM*", ATTRS{{idVendor}}=="{1:04x}", ATTRS{{idProduct}}=="{2:04x}", ENV{{ID_MM_DEVICE_IGNORE}}="1", TAG+="uaccess", SYMLINK+="armjig/{0}-$attr{{serial}}"
 )";
 /// The family has two pairs of numbers.

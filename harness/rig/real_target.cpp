@@ -9,34 +9,39 @@
 #include "harness/link/rfc2217_stream.hpp"
 #include "harness/link/serial_stream.hpp"
 #include "harness/link/tcp_session.hpp"
+#include "harness/link/usb_stream.hpp"
+#include "harness/rig/attached.hpp"
 
 namespace armjig {
 namespace {
 
-Outcome<std::unique_ptr<StreamPort>> open_serial_target(const Target& target,
-                                                        const SerialLine& line) {
-  const auto address = parse_serial_address(target.address, line);
-  if (!address) return tl::unexpected{address.error()};
-  return open_serial(*address);
-}
-
-/// The board's serial port, if there is just one of its kind.
-Outcome<std::unique_ptr<StreamPort>> open_usb_target(const Target& target, const SerialLine& line) {
-  const auto id = parse_usb_id(target.address);
-  if (!id) return bad_target(target.text, "write usb:VID:PID, for example usb:0483:5740");
+/// The path of the only serial port that the system has made of such a board.
+Outcome<std::string> path_of(const UsbChoice& choice, const std::string& target) {
   auto ports = list_serial_ports();
   if (!ports) return tl::unexpected{ports.error()};
-  std::erase_if(*ports, [&id](const SerialPort& port) { return port.usb != *id; });
+  std::erase_if(*ports, [&choice](const SerialPort& port) { return !is_meant(port, choice); });
+  if (ports->size() == 1) return ports->front().path;
   if (ports->empty()) {
-    return problem(ErrorCode::kNotFound, target.text,
+    return problem(ErrorCode::kNotFound, target,
                    "is the board plugged in and switched on? 'armjig devices' lists what is");
   }
-  if (ports->size() == 1) return open_serial({ports->front().path, line});
   std::string all;
   for (const auto& port : *ports) {
     all += fmt::format("{}serial:{}", all.empty() ? "" : " or ", port.path);
   }
-  return bad_target(target.text, "there are several of them: write " + all);
+  return bad_target(target, "there are several of them: write " + all);
+}
+
+Outcome<std::unique_ptr<StreamPort>> open_serial_target(const Target& target,
+                                                        const SerialLine& line) {
+  auto address = parse_serial_address(target.address, line);
+  if (!address) return tl::unexpected{address.error()};
+  if (const auto board = parse_usb_board(address->path)) {
+    auto path = path_of(*board, target.text);
+    if (!path) return tl::unexpected{path.error()};
+    address->path = *std::move(path);
+  }
+  return open_serial(*address);
 }
 
 }  // namespace
@@ -45,7 +50,7 @@ template <>
 Outcome<std::unique_ptr<StreamPort>> open_target(const Target& target, const SerialLine& line) {
   if (target.scheme == "pty") return open_pty(target.address, line);
   if (target.scheme == "serial") return open_serial_target(target, line);
-  if (target.scheme == "usb") return open_usb_target(target, line);
+  if (target.scheme == "usb") return open_usb_stream(target.address, line);
   if (target.scheme == "tcp") return open_tcp_stream(target.address);
   if (target.scheme == "rfc2217") return open_rfc2217(target.address, line);
   return no_target(target.text);

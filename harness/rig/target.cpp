@@ -12,8 +12,8 @@ namespace armjig {
 namespace {
 
 constexpr auto kForms =
-    "this is no target; write emulated:, serial:PATH, usb:VID:PID, pty:PATH, tcp:HOST:PORT, "
-    "rfc2217:HOST:PORT or i2c:DEVICE; "
+    "this is no target; write emulated:, serial:PATH, serial:VID:PID, usb:VID:PID, pty:PATH, "
+    "tcp:HOST:PORT, rfc2217:HOST:PORT or i2c:DEVICE; "
     "'armjig devices' lists what is plugged in";
 
 }  // namespace

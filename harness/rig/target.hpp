@@ -10,7 +10,9 @@ namespace armjig {
 ///
 ///     emulated:?OPTION=VALUE&...   in this process, in virtual time
 ///     serial:/dev/ttyACM0[,BAUD]   a serial port; the device's usual speed if none is said
-///     usb:0483:5740                the serial port of the only USB device with that VID:PID
+///     serial:0483:5740[:SERIAL]    that which the system has made of the only such USB device
+///     usb:0483:5740[:SERIAL]       the only such USB device, without the system's driver
+///     usb:1-2.3                    the one in that place: bus, port, port of a hub
 ///     pty:/dev/pts/5               a pseudo-terminal, such as that of an emulator
 ///     tcp:HOST:PORT                a byte stream over TCP, or a server
 ///     rfc2217:HOST:PORT[,BAUD]     a serial port of another machine over Telnet

@@ -130,6 +130,9 @@ def rows(folder):
         ("conformance parol6 --target serial:/dev/x,fast", "", 2, ["!serial:PATH,BAUD"]),
         ("conformance parol6 --target usb:0483", "", 2, ["!usb:0483:5740"]),
         ("conformance parol6 --target usb:ffff:fffe", "", 3, ["!plugged in"]),
+        ("conformance parol6 --target serial:ffff:fffe:1", "", 3, ["!plugged in"]),
+        ("emulate parol6 --usb-serial 7", "", 2, ["!--usb or --usbip"]),
+        ("emulate parol6 --usbip 0 --usb-serial", "", 2, ["!--usb-serial"]),
         ("conformance parol6 --target emulated: --filter nothing-like-that", "", 4, ["!--list"]),
         (f"trace verify {other}", "", 4, ["!toaster", "traces: 0 identical: 0 different: 0"]),
         # What it is for.

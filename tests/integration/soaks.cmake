@@ -76,8 +76,17 @@ add_test(NAME soak.trace
                  ${PROJECT_SOURCE_DIR}/captures/parol6/random_30s_a.jsonl)
 set_tests_properties(soak.trace PROPERTIES LABELS soak TIMEOUT 7200)
 
-# A cable that is pulled out 200 times, in a guest with a kernel of its own. Needs what
-# scripts/bootstrap --dev installs.
-add_test(NAME soak.unplug COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
-                                  unplug 200)
-set_tests_properties(soak.unplug PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)
+# In a guest with a kernel of its own, with its driver and without: a cable that is pulled out 200 times, and
+# a program that is killed while it moves the arm. Needs what scripts/bootstrap --dev installs.
+foreach(target serial:/dev/ttyACM0 usb:0483:5740)
+  string(REGEX REPLACE ":.*" "" link ${target})
+  add_test(NAME soak.unplug.${link} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
+                                            unplug 200 ${target})
+  add_test(NAME soak.killed.${link} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
+                                            killed ${target})
+  set_tests_properties(soak.unplug.${link} soak.killed.${link} PROPERTIES LABELS soak TIMEOUT 7200
+                                                                          SKIP_RETURN_CODE 77)
+endforeach()
+add_test(NAME soak.kernel_round_trip COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
+                                             roundtrip)
+set_tests_properties(soak.kernel_round_trip PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)

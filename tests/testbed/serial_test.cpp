@@ -88,21 +88,28 @@ TEST_F(SerialBench, SetsTheSpeedThatTheTargetNames) {
 TEST_F(SerialBench, FindsTheOnlyBoardOfItsKindByUsbNumbers) {
   bench_.plug_in(kModem, "/dev/null");
   bench_.plug_in(kBoard, emulator_.terminal());
-  EXPECT_EQ(run_one_case("usb:0483:5740").exit_code, 0);
+  EXPECT_EQ(run_one_case("serial:0483:5740").exit_code, 0);
 }
 
 TEST_F(SerialBench, ASecondBoardOfTheKindMakesTheUserChoose) {
   bench_.plug_in(kBoard, emulator_.terminal());
   bench_.plug_in(kTwin, emulator_.terminal());
-  const auto ended = run_one_case("usb:0483:5740");
+  const auto ended = run_one_case("serial:0483:5740");
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_THAT(ended.errors, HasSubstr("serial:/dev/ttyACM0 or serial:/dev/ttyACM1"));
 }
 
+TEST_F(SerialBench, ASerialNumberChoosesAmongBoardsOfAKind) {
+  bench_.plug_in(kTwin, "/dev/null");
+  bench_.plug_in(kBoard, emulator_.terminal());
+  EXPECT_EQ(run_one_case("serial:0483:5740:42A,250000").exit_code, 0);
+  EXPECT_EQ(bench_.baud_of("/dev/ttyACM0"), 250'000U);
+}
+
 TEST_F(SerialBench, ABoardThatIsNotPluggedInIsNamed) {
-  const auto ended = run_one_case("usb:0483:5740");
+  const auto ended = run_one_case("serial:0483:5740");
   EXPECT_EQ(ended.exit_code, 3);
-  EXPECT_THAT(ended.errors, HasSubstr("usb:0483:5740"));
+  EXPECT_THAT(ended.errors, HasSubstr("serial:0483:5740"));
 }
 
 TEST_F(SerialBench, FollowsTheNamesThatUdevGives) {

@@ -17,6 +17,7 @@
 #include "harness/core/hex.hpp"
 #include "harness/drive/morap/joint.hpp"
 #include "harness/link/i2c_tiny_usb.hpp"
+#include "harness/link/usb_stream.hpp"
 #include "tests/integration/support/program.hpp"
 #include "tests/testbed/usb_bench.hpp"
 #include "tests/testbed/usbfs_device.hpp"
@@ -193,7 +194,7 @@ TEST_F(UsbAdapterBench, ASecondOneMakesTheUserChoose) {
   const Plugged twin{bench_, kTwinAdapter};
   const auto problem = problem_of_opening();
   EXPECT_EQ(problem.code, ErrorCode::kBadTarget);
-  EXPECT_THAT(problem.hint, AllOf(HasSubstr("'7A'"), HasSubstr("'7B'")));
+  EXPECT_THAT(problem.hint, AllOf(HasSubstr("'7A' at 1-2"), HasSubstr("'7B' at 1-3")));
   EXPECT_FALSE(adapter.is_in_use() || twin.is_in_use());
 }
 
@@ -225,11 +226,44 @@ TEST_F(UsbAdapterBench, SaysThatAUdevRuleIsMissing) {
   const auto problem = problem_of_opening();
   EXPECT_EQ(problem.code, ErrorCode::kNoPermission);
   EXPECT_THAT(problem.hint, HasSubstr("udev rule 60-armjig.rules"));
+  EXPECT_THAT(problem.hint,
+              HasSubstr(R"(ATTR{idVendor}=="0403", ATTR{idProduct}=="c631", TAG+="uaccess")"));
 }
 
 TEST_F(UsbAdapterBench, RefusesADeviceThatIsNoSuchAdapter) {
   const Plugged adapter{bench_, kAdapter, {.functions = std::byte{}}};
   EXPECT_EQ(problem_of_opening().code, ErrorCode::kUnsupported);
+}
+
+// As the board that it is not. Boards: tests/kernel.
+
+Problem problem_of_meeting(const std::string& address) {
+  const auto port = open_usb_stream(address);
+  EXPECT_FALSE(port);
+  return port ? Problem{} : port.error();
+}
+
+TEST_F(UsbAdapterBench, IsNoSerialPort) {
+  const Plugged adapter{bench_, kAdapter};
+  const auto problem = problem_of_meeting("0403:C631");
+  EXPECT_EQ(problem.code, ErrorCode::kUnsupported);
+  EXPECT_EQ(problem.where, "usb:0403:C631");
+  EXPECT_THAT(problem.hint, HasSubstr("serial:VID:PID"));
+  EXPECT_TRUE(opened()) << "it is left as it was";
+}
+
+TEST_F(UsbAdapterBench, AmongSeveralDevicesANumberOrAPlaceChooses) {
+  const Plugged adapter{bench_, kAdapter};
+  const Plugged twin{bench_, kTwinAdapter};
+  const auto problem = problem_of_meeting("0403:c631");
+  EXPECT_EQ(problem.code, ErrorCode::kBadTarget);
+  EXPECT_THAT(problem.hint, AllOf(HasSubstr("'7A' at 1-2"), HasSubstr("'7B' at 1-3")));
+  for (const auto* one : {"0403:c631:7B", "1-3", "1-2,9600"}) {
+    EXPECT_EQ(problem_of_meeting(one).code, ErrorCode::kUnsupported) << one;
+  }
+  for (const auto* none : {"0403:c631:7C", "1-4", "2-3", "1-2.1", "0403:6001"}) {
+    EXPECT_EQ(problem_of_meeting(none).code, ErrorCode::kNotFound) << none;
+  }
 }
 
 TEST_F(UsbAdapterBench, ARequestThatItStallsIsUnsupported) {

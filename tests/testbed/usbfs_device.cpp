@@ -42,7 +42,7 @@ void append(std::vector<std::uint8_t>& bytes, const Descriptor& descriptor) {
 }
 
 /// A device and its only configuration: an interface without endpoints.
-std::vector<std::uint8_t> descriptors_of(UsbNumbers numbers) {
+std::vector<std::uint8_t> descriptors_of(UsbId numbers) {
   std::vector<std::uint8_t> bytes;
   append(bytes, usb_device_descriptor{.bLength = USB_DT_DEVICE_SIZE,
                                       .bDescriptorType = USB_DT_DEVICE,

@@ -22,7 +22,7 @@ class UsbfsDevice {
  public:
   struct Identity {
     std::uint8_t number;  ///< on its bus
-    UsbNumbers numbers;
+    UsbId numbers;
     std::string serial_number;
   };
 

@@ -16,14 +16,6 @@ namespace {
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-TEST(UsbId, IsWrittenAsItIsRead) {
-  const auto id = parse_usb_id("0483:5740").value();
-  EXPECT_EQ(id.vendor, 0x0483);
-  EXPECT_EQ(id.product, 0x5740);
-  EXPECT_EQ(to_string(id), "0483:5740");
-  EXPECT_EQ(parse_usb_id("AbC:f"), (UsbId{0x0ABC, 0x000F}));
-}
-
 TEST(SerialAddress, HasAPathAndTheUsualSpeed) {
   const auto address = parse_serial_address("/dev/ttyACM0").value();
   EXPECT_EQ(address.path, "/dev/ttyACM0");

@@ -17,6 +17,7 @@
 namespace armjig {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 using State = Finding::State;
@@ -219,6 +220,9 @@ TEST(UdevRules, NameEachKnownBoard) {
 TEST(UdevRules, ComeBeforeTheOnesThatGiveAccess) {
   EXPECT_LT(kUdevRulesFile, "73-seat-late.rules");
   EXPECT_THAT(udev_rules(kBoards), HasSubstr("TAG+=\"uaccess\""));
+  EXPECT_THAT(udev_rules(kBoards),
+              ContainsRegex("DEVTYPE.*ATTR.idProduct.==\"5740\".*TAG.=\"uaccess\""))
+      << "for usb:";
   // Both pairs of numbers that make_i2c_tiny_usb takes, and the bus of Linux' driver.
   EXPECT_THAT(udev_rules(kBoards),
               HasSubstr("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"c631\""));
@@ -235,6 +239,17 @@ TEST(AttachedPort, LooksLikeABoardByItsUsbNumbers) {
   EXPECT_EQ(device_behind(port, kBoards), "");
   port.usb = std::nullopt;
   EXPECT_EQ(device_behind(port, kBoards), "");
+}
+
+TEST(AttachedPort, IsMeantByItsNumbersAndItsSerialNumber) {
+  auto port = parol6_at("/dev/ttyACM0");
+  const UsbId id{0x0483, 0x5740};
+  EXPECT_TRUE(is_meant(port, {.ids = {id}}));
+  EXPECT_TRUE(is_meant(port, {.ids = {id}, .serial_number = "42"}));
+  EXPECT_FALSE(is_meant(port, {.ids = {id}, .serial_number = "4"}));
+  EXPECT_FALSE(is_meant(port, {.ids = {{0x0483, 0x5741}}, .serial_number = "42"}));
+  port.usb = std::nullopt;
+  EXPECT_FALSE(is_meant(port, {.ids = {id}}));
 }
 
 TEST(AttachedPort, IsDescribedByAllThatIsKnown) {

@@ -81,9 +81,9 @@ TEST(Target, ASerialPortThatIsNotThereIsNotFound) {
   EXPECT_THAT(found.hint, HasSubstr("armjig devices"));
 }
 
-TEST(Target, AUsbDeviceIsTwoHexadecimalNumbers) {
+TEST(Target, AUsbDeviceIsTwoHexadecimalNumbersOrAPlace) {
   for (const auto* text : {"usb:", "usb:0483", "usb:0483:", "usb:0483:57400", "usb:xyz:5740",
-                           "usb:0483:5740:1", "usb:-1:5740"}) {
+                           "usb:0483:5740:", "usb:0483:5740,fast", "usb:-1:5740", "usb:1-2."}) {
     EXPECT_EQ(problem_of(text).code, ErrorCode::kBadTarget) << text;
     EXPECT_THAT(problem_of(text).hint, HasSubstr("usb:0483:5740")) << text;
   }

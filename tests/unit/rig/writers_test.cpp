@@ -91,7 +91,7 @@ std::vector<std::string> files_with(const std::string& pattern) {
 const std::vector<Step>& steps() {
   static const std::vector<Step> all{
       {"opening a device that is not emulated",
-       R"(\b(open_pty|open_tcp_stream|open_rfc2217|speak_rfc2217|open_serial|open_i2c_dev|open_i2c_tiny_usb|make_tcp_session|open_tcp_server)\s*\()",
+       R"(\b(open_pty|open_tcp_stream|open_rfc2217|speak_rfc2217|open_serial|open_usb_stream|open_i2c_dev|open_i2c_tiny_usb|make_tcp_session|open_tcp_server)\s*\()",
        {{"harness/link/i2c_dev.cpp", "makes them"},
         {"harness/link/i2c_dev.hpp", "declares them"},
         {"harness/link/i2c_tiny_usb.cpp", "makes them"},
@@ -104,6 +104,8 @@ const std::vector<Step>& steps() {
         {"harness/link/serial_stream.hpp", "declares them"},
         {"harness/link/tcp_session.cpp", "makes them"},
         {"harness/link/tcp_session.hpp", "declares them"},
+        {"harness/link/usb_stream.cpp", "makes them"},
+        {"harness/link/usb_stream.hpp", "declares them"},
         {"harness/rig/real_target.cpp", "in open_target (next step)"}}},
       {"opening a target without a guard",
        R"(\bopen_target\b)",
@@ -221,6 +223,7 @@ const std::vector<Step>& steps() {
         {"harness/link/real_streams.cpp", "answers it"},
         {"harness/link/rfc2217_stream.cpp", "answers what is inside"},
         {"harness/link/tcp_session.cpp", "answers it"},
+        {"harness/link/usb_stream.cpp", "answers it"},
         {"harness/link/port_around.hpp", "passes on what it is given"},
         {"harness/rig/guarded_ports.hpp", "passes on what it is given"},
         {"harness/rig/direct_line.cpp", "of guarded ports only, together with their guard"},
@@ -237,11 +240,13 @@ const std::vector<Step>& steps() {
         {"harness/link/rfc2217_stream.cpp", "escapes the message first"},
         {"harness/link/usb_control.hpp", "declares it"},
         {"harness/link/usb_control.cpp", "makes it"},
+        {"harness/link/usb_stream.cpp", "makes it"},
         {"harness/rig/supervisor.cpp", "the stop, which is always allowed"}}},
       {"talking to drivers",
        R"(\b(I2C_RDWR|USBDEVFS_\w+)\b)",
        {{"harness/link/i2c_dev.cpp", "I2C buses"},
         {"harness/link/usb_control.cpp", "the last message of a program that has gone"},
+        {"harness/link/usb_stream.cpp", "the same for boards"},
         {"emulators/lab/virtual_i2c.cpp", "the emulated bus answers its client"}}},
       {"opening files by system call",
        R"([^_[:alnum:]>]::(open|openat|socket|posix_openpt|sp_open)\s*\()",
@@ -261,7 +266,9 @@ const std::vector<Step>& steps() {
         {"emulators/lab/virtual_i2c.cpp", "the emulated bus answers its client"},
         {"harness/link/i2c_dev.cpp", "I2C buses"},
         {"harness/link/serial_stream.cpp", "sets serial ports up"},
-        {"harness/link/usb_control.cpp", "for i2c_tiny_usb"}}},
+        {"harness/link/usb_control.cpp", "for i2c_tiny_usb"},
+        {"harness/link/usb_device.cpp", "finds and opens devices, and says nothing to them"},
+        {"harness/link/usb_stream.cpp", "serial ports of USB boards"}}},
   };
   return all;
 }
