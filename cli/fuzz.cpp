@@ -25,6 +25,7 @@
 #include "conformance/selection.hpp"
 #include "emulators/campaign/campaign.hpp"
 #include "emulators/campaign/campaign_report.hpp"
+#include "emulators/campaign/cause.hpp"
 #include "emulators/campaign/folder.hpp"
 #include "harness/report/wording.hpp"
 
@@ -175,7 +176,8 @@ std::string repeat_of(const FuzzRun& run, const std::optional<Folder>& folder,
 /// Writes what is found as it is found, and says how far it is.
 class Account {
  public:
-  explicit Account(const std::optional<Folder>& folder) : folder_{folder} {}
+  Account(const std::optional<Folder>& folder, std::size_t causes)
+      : folder_{folder}, causes_{causes} {}
 
   [[nodiscard]] CampaignListener listener() {
     return {.on_case =
@@ -186,9 +188,14 @@ class Account {
                   next_ = std::chrono::steady_clock::now() + std::chrono::seconds{5};
                 },
             .on_finding =
-                [this](const campaign::Finding& finding) {
+                [this](const CampaignState& state) {
+                  const auto& finding = state.findings.back();
+                  const bool is_further = state.causes == std::exchange(causes_, state.causes);
                   progress_.clear();
-                  fmt::print("{} {}\n", finding.known.empty() ? "FINDING" : "KNOWN  ",
+                  fmt::print("{} {}\n",
+                             is_further              ? "  also "
+                             : finding.known.empty() ? "FINDING"
+                                                     : "KNOWN  ",
                              wording::line(finding.sentence));
                   std::fflush(stdout);
                   if (folder_) note(folder_->keep(finding));
@@ -210,6 +217,7 @@ class Account {
   }
 
   const std::optional<Folder>& folder_;
+  std::size_t causes_;
   Progress progress_;
   std::chrono::steady_clock::time_point next_{};
   Outcome<void> written_;
@@ -268,7 +276,7 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   const auto hand = hand_of(run.options.hands);
   auto stage = stage_of(run.device, how, run.model, hand, kHorizon + 2 * rules->time_tolerance);
   const auto options = campaign_options(run, state, *std::move(rules), must_stop);
-  Account account{folder};
+  Account account{folder, causes_of(state.findings).size()};
   const auto done = run_campaign(*stage, *material, options, state, account.listener());
   account.finish(state);
   const bool was_stopped = !done && signals.has_come();

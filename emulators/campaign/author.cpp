@@ -57,12 +57,20 @@ std::int64_t odd_float(Dice& dice) {
   return dice.one_of(kBits);
 }
 
+/// An end of the field's range, with or without a sign.
+std::int64_t end_of(Dice& dice, const Field& field) {
+  const auto top = std::int64_t{1} << (8U * field.width - 1U);
+  const std::array<std::int64_t, 4> ends{top - 1, -top, 2 * top - 1, top};
+  return dice.one_of(ends);
+}
+
 void spoil_bytes_of(Dice& dice, const Field& field, std::span<std::byte> message) {
   if (field.offset + std::size_t{field.width} > message.size() || field.width == 0) return;
   const bool is_named = !field.values.empty() && !dice.one_in(3);
   const auto value = field.encoding == Encoding::kFloatLittle && dice.one_in(2) ? odd_float(dice)
-                     : is_named ? dice.one_of(field.values).value
-                                : sessions::odd_number(dice);
+                     : is_named       ? dice.one_of(field.values).value
+                     : dice.one_in(4) ? end_of(dice, field)
+                                      : sessions::odd_number(dice);
   set_field_value(field, message, value);
 }
 

@@ -6,9 +6,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <set>
 #include <utility>
 
+#include "emulators/campaign/cause.hpp"
 #include "emulators/campaign/shrink.hpp"
+#include "emulators/campaign/siblings.hpp"
 #include "harness/compare/recording_diff.hpp"
 
 namespace armjig::campaign {
@@ -68,6 +72,7 @@ class Campaign {
         author_{material},
         excuses_{options.excuses} {
     for (const auto& finding : state.findings) excuse(finding);
+    state_.causes = causes_of(state_.findings).size();
   }
 
   [[nodiscard]] Outcome<void> run() {
@@ -145,7 +150,11 @@ class Campaign {
     return {};
   }
   void pass_over(const Symptom& symptom) {
-    for (const auto& part : symptom.parts) excuses_.add({}, symptom.answer, part);
+    for (const auto& part : symptom.parts) {
+      excuses_.add({}, symptom.answer, part);
+      excuses_at_first_.add({}, symptom.answer, part);
+      excuses_anyway_.add({}, symptom.answer, part);
+    }
     state_.passed_over.push_back(
         fmt::format("{}: {} instead of {}", symptom.answer, symptom.actual, symptom.expected));
   }
@@ -237,11 +246,15 @@ class Campaign {
       short_one = std::move(script);
       last_seen_ = std::move(seen_first);
     }
-    complete(finding, *std::move(short_one));
+    complete(finding, *short_one);
     excuse(finding);
     excuse(symptom, symptom.asked);
-    if (listener_.on_finding) listener_.on_finding(finding);
+    if (*is_sure) {
+      if (auto noted = note_what_shows(finding, *short_one); !noted) return noted;
+    }
     state_.findings.push_back(std::move(finding));
+    state_.causes = causes_of(state_.findings).size();
+    if (listener_.on_finding) listener_.on_finding(state_);
     return start_again();
   }
 
@@ -276,11 +289,59 @@ class Campaign {
     if (const auto* known = options_.known.find(finding.symptom)) finding.known = known->why;
   }
 
+  /// All that the finding shows; what it shows when its answers are read as a whole; and what it
+  /// shows of other joints, if these are wrong in the same manner.
+  [[nodiscard]] Outcome<void> note_what_shows(Finding& finding, const Script& script) {
+    std::set<std::string> all;
+    const auto add = [&all](std::vector<std::string> ways) {
+      all.insert(std::make_move_iterator(ways.begin()), std::make_move_iterator(ways.end()));
+    };
+    const auto judge = [&](const Script& whole, const BothHeard& heard) {
+      add(all_ways(whole, heard, options_.judging, excuses_at_first_, excuses_));
+    };
+    const auto judge_sibling = [&](const Script& whole, const BothHeard& heard) {
+      const auto symptom = symptom_of(whole, heard, options_.judging, excuses_anyway_);
+      if (symptom && symptom->answer == finding.symptom.answer &&
+          are_alike(*symptom, finding.symptom)) {
+        add(symptom->ways());
+      }
+    };
+    judge(finding.script, last_seen_.heard);
+    if (const auto read = with_whole_reads(script); read != script) {
+      if (auto done = play_fresh(read, judge); !done) return done;
+    }
+    for (const auto& other : for_siblings(script, finding.symptom.parts.front(),
+                                          material_.make_dissector, material_.seal)) {
+      if (auto done = play_fresh(other, judge_sibling); !done) return done;
+    }
+    finding.shows.assign(all.begin(), all.end());
+    return {};
+  }
+
+  /// On a device that is as new; what the guard refuses is left out.
+  template <class JudgeHeard>
+  [[nodiscard]] Outcome<void> play_fresh(const Script& script, JudgeHeard judge_heard) {
+    if (options_.must_stop()) return {};
+    if (auto begun = stage_.reset(); !begun) return begun;
+    const auto whole = with_question(script);
+    const auto heard = stage_.play(whole);
+    if (heard) {
+      judge_heard(whole, *heard);
+    } else if (heard.error().code != ErrorCode::kForbidden) {
+      return tl::unexpected{heard.error()};
+    }
+    return {};
+  }
+
   /// What was found is not found again: after any question, if one message was enough for it.
   void excuse(const Finding& finding) {
     const auto sent = std::ranges::count_if(finding.script, is_sent);
     const auto harmless = std::ranges::count_if(material_.harmless, is_sent);
     excuse(finding.symptom, sent <= harmless + 1 ? std::string{} : finding.symptom.asked);
+    if (finding.size > 0) return;
+    for (const auto& part : finding.symptom.parts) {
+      excuses_anyway_.add({}, finding.symptom.answer, part);
+    }
   }
   void excuse(const Symptom& symptom, const std::string& asked) {
     for (const auto& part : symptom.parts) {
@@ -298,6 +359,8 @@ class Campaign {
   const CampaignListener& listener_;
   Author author_;
   Excuses excuses_;
+  Excuses excuses_at_first_ = options_.excuses;  ///< without what was found
+  Excuses excuses_anyway_ = options_.excuses;    ///< with what shows whatever is done
   std::map<std::string, int> of_part_;
   Script history_;  ///< what was done since the last reset
   std::size_t history_count_ = 0;

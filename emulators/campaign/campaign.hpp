@@ -31,7 +31,7 @@ struct CampaignOptions {
   Known known{};
   std::size_t cases_between_resets = 1;  ///< at least 1; where resetting makes the target new
   int confirmations = 1;  ///< so often a symptom has to come again, before and after shrinking
-  std::size_t most_attempts = 2000;  ///< at shrinking one finding
+  std::size_t most_attempts = 20'000;  ///< at shrinking one finding
   Duration most_shrinking{};         ///< time for one finding, by the wall clock
   bool stops_at_first = false;       ///< finding that is news
   std::function<bool()> must_stop = [] { return false; };
@@ -49,6 +49,9 @@ struct Finding {
   std::size_t found_size{};         ///< records of the case before shrinking
   std::size_t size{};               ///< and after it, without the question at the end
   Duration found_after{};           ///< by the wall clock, since the campaign began
+  /// All that differs when `script` is played, as `Symptom::ways`, sorted; empty if it is not
+  /// short.
+  std::vector<std::string> shows{};
 };
 
 /// How far a campaign is.
@@ -64,12 +67,14 @@ struct CampaignState {
   Shown shown{};
   std::vector<Script> worthy{};  ///< scripts that showed something new
   std::vector<Finding> findings{};
+  std::size_t causes{};  ///< of these findings
 };
 
-/// Told after each case, and of each finding and worthy script when it is there; each may be empty.
+/// Told after each case, and of each finding, the last one then, and worthy script when it is
+/// there; each may be empty.
 struct CampaignListener {
   std::function<void(const CampaignState&)> on_case;
-  std::function<void(const Finding&)> on_finding;
+  std::function<void(const CampaignState&)> on_finding;
   std::function<void(const Script&, std::uint64_t case_number)> on_worthy;
 };
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "emulators/campaign/cause.hpp"
 #include "emulators/campaign/folder.hpp"
 
 namespace armjig::campaign {
@@ -19,7 +20,21 @@ double rate_of(const CampaignState& state) {
   return passed > 0 ? static_cast<double>(state.cases) / passed : 0;
 }
 
-ReportRow row_of(const std::string& device, const Finding& finding) {
+/// The further ways, with the names that their files have.
+std::string ways_of(const Cause& cause) {
+  constexpr std::size_t kMostTold = 20;
+  const auto count = cause.further.size();
+  if (count == 0) return {};
+  auto text = fmt::format("\nit showed in {} further way{}", count, count == 1 ? "" : "s");
+  for (std::size_t i = 0; i < std::min(count, kMostTold); ++i) {
+    text += fmt::format("\n  {} ({})", cause.further[i]->symptom.key(),
+                        campaign::name_of(*cause.further[i]));
+  }
+  return count > kMostTold ? text + "\n  ..." : text;
+}
+
+ReportRow row_of(const std::string& device, const Cause& cause) {
+  const auto& finding = *cause.finding;
   ReportRow row;
   row.verdict = finding.known.empty() ? Verdict::kFail : Verdict::kDeviation;
   row.name = fmt::format("{}.fuzz.{}", device, campaign::name_of(finding));
@@ -30,9 +45,10 @@ ReportRow row_of(const std::string& device, const Finding& finding) {
                    : fmt::format("{} (known: {})", finding.symptom.actual, finding.known);
   row.evidence = fmt::format(
       "symptom: {}\ncase {}, {:.1f} s after the beginning; {} records, {} after shrinking, "
-      "and the harmless question",
+      "and the harmless question{}",
       finding.symptom.key(), finding.case_number,
-      std::chrono::duration<double>{finding.found_after}.count(), finding.found_size, finding.size);
+      std::chrono::duration<double>{finding.found_after}.count(), finding.found_size, finding.size,
+      ways_of(cause));
   return row;
 }
 
@@ -61,9 +77,10 @@ Report to_report(const std::string& device, const CampaignState& state,
                  const std::function<std::string(const Finding&)>& repeat_of) {
   Report report;
   report.title = fmt::format("fuzz campaign of {}", device);
-  for (const auto& finding : state.findings) {
-    report.rows.push_back(row_of(device, finding));
-    report.rows.back().repeat = repeat_of(finding);
+  const auto causes = causes_of(state.findings);
+  for (const auto& cause : causes) {
+    report.rows.push_back(row_of(device, cause));
+    report.rows.back().repeat = repeat_of(*cause.finding);
   }
   if (!state.passed_over.empty()) report.rows.push_back(row_of_beginning(device, state));
   report.rows.push_back(row_of_cases(device, state));
@@ -74,6 +91,8 @@ Report to_report(const std::string& device, const CampaignState& state,
   };
   add("cases", fmt::format("{}", state.cases));
   add("cases a second", fmt::format("{:.1f}", rate_of(state)));
+  add("further ways in which findings showed",
+      fmt::format("{}", state.findings.size() - causes.size()));
   add("states", fmt::format("{}", state.shown.states()));
   add("transitions", fmt::format("{}", state.shown.transitions()));
   add("distinct answers", fmt::format("{}", state.shown.answers()));
@@ -86,7 +105,7 @@ Report to_report(const std::string& device, const CampaignState& state,
 }
 
 std::string progress_line(const CampaignState& state) {
-  const auto count = state.findings.size();
+  const auto count = state.causes;
   return fmt::format(
       "{} cases, {:.1f} a second; {} states, {} transitions, {} answers; {} finding{}", state.cases,
       rate_of(state), state.shown.states(), state.shown.transitions(), state.shown.answers(), count,

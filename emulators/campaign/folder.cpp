@@ -45,7 +45,8 @@ Json to_json(const Finding& finding) {
           {"case", finding.case_number},
           {"records_before", finding.found_size},
           {"records", finding.size},
-          {"found_after_s", seconds_of(finding.found_after)}};
+          {"found_after_s", seconds_of(finding.found_after)},
+          {"shows", finding.shows}};
 }
 
 /// Its script is in a file of its own.
@@ -62,6 +63,8 @@ Finding finding_in(const Json& json) {
   finding.found_size = json.value("records_before", std::size_t{});
   finding.size = json.value("records", std::size_t{});
   finding.found_after = duration_in(json, "found_after_s");
+  finding.shows = json.value("shows", std::vector<std::string>{});
+  std::ranges::sort(finding.shows);
   return finding;
 }
 

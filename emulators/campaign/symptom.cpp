@@ -5,7 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "emulators/campaign/talk.hpp"
@@ -76,8 +79,11 @@ std::pair<std::string, std::string> sides_of(const RecordingDifference& differen
 
 class Judge {
  public:
-  Judge(const Script& script, const Judging& judging, const Excuses& excuses)
-      : script_{script}, judging_{judging}, excuses_{excuses} {}
+  /// `found`: what differs, so that it says nothing of which message is which.
+  Judge(const Script& script, const Judging& judging, const Excuses& excuses, const Excuses& found)
+      : script_{script}, judging_{judging}, excuses_{excuses}, aligning_{judging.rules} {
+    std::ranges::copy(found.fields(), std::back_inserter(aligning_.fields));
+  }
 
   [[nodiscard]] std::optional<Symptom> of_end(const BothHeard& heard) const {
     const auto has_ended = [](const Heard& model) { return model.end.has_value(); };
@@ -94,29 +100,61 @@ class Judge {
 
   [[nodiscard]] std::optional<Symptom> of_difference(const Heard& target,
                                                      const Heard& model) const {
-    const auto before = messages_of(model.said, judging_.make_dissector);
-    const auto after = messages_of(target.said, judging_.make_dissector);
-    const auto end = script_.empty() ? Instant{} : script_.back().time;
-    for (const auto& difference : diff(before, after, judging_.rules)) {
-      const bool is_one_sided = difference.change != Change::kChanged;
-      if (is_one_sided && difference.time() > end + judging_.horizon) continue;
-      const auto& message = difference.before != nullptr ? *difference.before : *difference.after;
-      const auto parts = parts_of(difference);
-      auto symptom =
-          excused({.asked = asked_before(script_, difference.time(), judging_.make_dissector),
-                   .answer = name_of(message),
-                   .parts = parts,
-                   .expected = {},
-                   .actual = {},
-                   .time = difference.time()});
-      if (!symptom) continue;
-      std::tie(symptom->expected, symptom->actual) = sides_of(difference, symptom->parts);
-      return symptom;
-    }
-    return std::nullopt;
+    std::optional<Symptom> first;
+    each_difference(target, model, [&](Symptom symptom, const RecordingDifference& difference) {
+      std::tie(symptom.expected, symptom.actual) = sides_of(difference, symptom.parts);
+      first = std::move(symptom);
+      return false;
+    });
+    return first;
+  }
+
+  [[nodiscard]] std::set<std::string> ways(const Heard& target, const Heard& model) const {
+    std::set<std::string> all;
+    const auto done = all_done();
+    each_difference(target, model, [&](Symptom symptom, const RecordingDifference&) {
+      // It may have been any of what was done before: an answer can come late.
+      for (const auto& [time, words] : done) {
+        if (time > symptom.time) break;
+        symptom.asked = words;
+        for (auto& way : symptom.ways()) all.insert(std::move(way));
+      }
+      return true;
+    });
+    return all;
   }
 
  private:
+  [[nodiscard]] std::vector<std::pair<Instant, std::string>> all_done() const {
+    std::vector<std::pair<Instant, std::string>> all{{Instant::min(), "the beginning"}};
+    for (const auto& record : script_) {
+      auto words = words_of(record, judging_.make_dissector);
+      if (words != all.back().second) all.emplace_back(record.time, std::move(words));
+    }
+    return all;
+  }
+
+  /// In order of time, as long as `goes_on(symptom, difference)` says so.
+  template <class GoesOn>
+  void each_difference(const Heard& target, const Heard& model, GoesOn goes_on) const {
+    const auto before = messages_of(model.said, judging_.make_dissector);
+    const auto after = messages_of(target.said, judging_.make_dissector);
+    const auto end = script_.empty() ? Instant{} : script_.back().time;
+    for (const auto& difference : diff(before, after, judging_.rules, aligning_)) {
+      const bool is_one_sided = difference.change != Change::kChanged;
+      if (is_one_sided && difference.time() > end + judging_.horizon) continue;
+      const auto& message = difference.before != nullptr ? *difference.before : *difference.after;
+      auto symptom =
+          excused({.asked = asked_before(script_, difference.time(), judging_.make_dissector),
+                   .answer = name_of(message),
+                   .parts = parts_of(difference),
+                   .expected = {},
+                   .actual = {},
+                   .time = difference.time()});
+      if (symptom && !goes_on(*std::move(symptom), difference)) return;
+    }
+  }
+
   /// The symptom without what is no news; none if nothing is left.
   [[nodiscard]] std::optional<Symptom> excused(Symptom symptom) const {
     std::erase_if(symptom.parts, [&](const std::string& part) {
@@ -129,7 +167,22 @@ class Judge {
   const Script& script_;
   const Judging& judging_;
   const Excuses& excuses_;
+  ComparisonRules aligning_;
 };
+
+/// `2 messages at once, the last command jog` without the first words.
+std::string_view last_of(std::string_view asked) {
+  constexpr std::string_view kLast = " at once, the last ";
+  const auto place = asked.find(kLast);
+  return place == asked.npos ? asked : asked.substr(place + kLast.size());
+}
+
+/// As opposed to what became of a whole message.
+bool is_field(std::string_view part) {
+  constexpr std::array<std::string_view, 7> kOthers{"missing", "extra", "moved", "time",
+                                                    "note",    "rest",  "bytes"};
+  return std::ranges::find(kOthers, part) == kOthers.end();
+}
 
 }  // namespace
 
@@ -137,8 +190,21 @@ std::string Symptom::key() const {
   return fmt::format("after {}: {}: {}", asked, answer, fmt::join(parts, ", "));
 }
 
+std::vector<std::string> Symptom::ways() const {
+  std::vector<std::string> all;
+  for (const auto& part : parts) {
+    all.push_back(is_field(part) ? fmt::format("{}: {}", answer, part)
+                                 : fmt::format("after {}: {}: {}", last_of(asked), answer, part));
+  }
+  return all;
+}
+
 void Excuses::add(std::string_view asked, std::string_view answer, std::string_view part) {
   keys_.insert(key_of(asked, answer, part));
+  const auto is_it = [&](const auto& one) { return one.message == answer && one.name == part; };
+  if (std::ranges::any_of(fields_, is_it)) return;
+  fields_.push_back(
+      {.message = std::string{answer}, .name = std::string{part}, .is_ignored = true});
 }
 
 bool Excuses::has(std::string_view asked, std::string_view answer, std::string_view part) const {
@@ -147,7 +213,7 @@ bool Excuses::has(std::string_view asked, std::string_view answer, std::string_v
 
 std::optional<Symptom> symptom_of(const Script& script, const BothHeard& heard,
                                   const Judging& judging, const Excuses& excuses) {
-  const Judge judge{script, judging, excuses};
+  const Judge judge{script, judging, excuses, excuses};
   if (heard.target.end) return judge.of_end(heard);
   std::optional<Symptom> latest;
   for (const auto& model : heard.models) {
@@ -156,6 +222,24 @@ std::optional<Symptom> symptom_of(const Script& script, const BothHeard& heard,
     if (!latest || latest->time < symptom->time) latest = std::move(symptom);
   }
   return latest;
+}
+
+std::vector<std::string> all_ways(const Script& script, const BothHeard& heard,
+                                  const Judging& judging, const Excuses& excuses,
+                                  const Excuses& found) {
+  const Judge judge{script, judging, excuses, found};
+  if (heard.target.end) {
+    const auto symptom = judge.of_end(heard);
+    return symptom ? symptom->ways() : std::vector<std::string>{};
+  }
+  std::optional<std::set<std::string>> common;
+  for (const auto& model : heard.models) {
+    auto ways = judge.ways(heard.target, model);
+    if (common) std::erase_if(ways, [&](const auto& way) { return !common->contains(way); });
+    common = std::move(ways);
+  }
+  if (!common) return {};
+  return {common->begin(), common->end()};
 }
 
 }  // namespace armjig::campaign

@@ -25,6 +25,9 @@ struct Symptom {
   Instant time{};  ///< since the case began
 
   [[nodiscard]] std::string key() const;
+  /// The same, one for each part. Of a field that is wrong it does not say after what, and never
+  /// how many messages came at once.
+  [[nodiscard]] std::vector<std::string> ways() const;
 };
 
 /// Symptoms that are no news: parts of answers that were found wrong, or were known before.
@@ -35,9 +38,14 @@ class Excuses {
   [[nodiscard]] bool has(std::string_view asked, std::string_view answer,
                          std::string_view part) const;
   [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
+  /// Fields that are excused after some question: they tell no message from another.
+  [[nodiscard]] const std::vector<ComparisonRules::FieldRule>& fields() const noexcept {
+    return fields_;
+  }
 
  private:
   std::set<std::string, std::less<>> keys_;
+  std::vector<ComparisonRules::FieldRule> fields_;
 };
 
 /// How both sides are compared.
@@ -52,5 +60,11 @@ struct Judging {
 /// of no model did, or it differs from all models. None: all is well.
 [[nodiscard]] std::optional<Symptom> symptom_of(const Script& script, const BothHeard& heard,
                                                 const Judging& judging, const Excuses& excuses);
+
+/// All that differs from all models, as `Symptom::ways`, sorted. `found` is what was found before:
+/// it is told, too, as far as `excuses` does not have it.
+[[nodiscard]] std::vector<std::string> all_ways(const Script& script, const BothHeard& heard,
+                                                const Judging& judging, const Excuses& excuses,
+                                                const Excuses& found);
 
 }  // namespace armjig::campaign

@@ -151,8 +151,8 @@ class Alignment {
 /// One lane of both recordings.
 class LaneDiff {
  public:
-  LaneDiff(Lane before, Lane after, const Likeness& judge)
-      : before_{before}, after_{after}, judge_{judge} {}
+  LaneDiff(Lane before, Lane after, const Likeness& judge, const Likeness& matcher)
+      : before_{before}, after_{after}, judge_{judge}, matcher_{matcher} {}
 
   [[nodiscard]] std::vector<RecordingDifference> run() {
     align({0, 0}, {before_.size(), after_.size()}, Level::kContentAndTime);
@@ -165,8 +165,8 @@ class LaneDiff {
   [[nodiscard]] bool is_match(Level level, const RecordedMessage& one,
                               const RecordedMessage& other) const {
     if (level == Level::kKind) return one.message.name == other.message.name;
-    return (level == Level::kContent || judge_.is_in_time(one, other)) &&
-           judge_.has_same_content(one, other);
+    return (level == Level::kContent || matcher_.is_in_time(one, other)) &&
+           matcher_.has_same_content(one, other);
   }
 
   /// Pairs what matches, and what is between the pairs by the next level.
@@ -215,6 +215,7 @@ class LaneDiff {
   Lane before_;
   Lane after_;
   const Likeness& judge_;
+  const Likeness& matcher_;
   std::vector<RecordingDifference> found_;
 };
 
@@ -334,14 +335,21 @@ std::string_view to_string(Change change) noexcept {
 
 std::vector<RecordingDifference> diff(const RecordedMessages& before, const RecordedMessages& after,
                                       const ComparisonRules& rules) {
+  return diff(before, after, rules, rules);
+}
+
+std::vector<RecordingDifference> diff(const RecordedMessages& before, const RecordedMessages& after,
+                                      const ComparisonRules& rules,
+                                      const ComparisonRules& aligning) {
   const Likeness judge{rules};
+  const Likeness matcher{aligning};
   std::set<std::string> names;
   for (const auto* const recording : {&before, &after}) {
     for (const auto& [name, messages] : recording->lanes()) names.insert(name);
   }
   std::vector<RecordingDifference> all;
   for (const auto& name : names) {
-    auto found = LaneDiff{lane_of(before, name), lane_of(after, name), judge}.run();
+    auto found = LaneDiff{lane_of(before, name), lane_of(after, name), judge, matcher}.run();
     std::erase_if(found, [&rules](const RecordingDifference& one) {
       return rules.ignores((one.before != nullptr ? one.before : one.after)->message.name);
     });

@@ -85,7 +85,12 @@ struct RecordingDifference {
 
 /// Aligns two recordings and answers what differs under the rules, in order of time. Within a lane
 /// messages are matched by content and time, what is left by content, then by kind. Time grows with
-/// the number of messages, times 1024 at most where nothing matches.
+/// the number of messages, times 1024 at most where nothing matches. `aligning` are the rules for
+/// matching alone: fields that they ignore differ, but are no sign of which message is which.
+[[nodiscard]] std::vector<RecordingDifference> diff(const RecordedMessages& before,
+                                                    const RecordedMessages& after,
+                                                    const ComparisonRules& rules,
+                                                    const ComparisonRules& aligning);
 [[nodiscard]] std::vector<RecordingDifference> diff(const RecordedMessages& before,
                                                     const RecordedMessages& after,
                                                     const ComparisonRules& rules);

@@ -162,12 +162,16 @@ std::byte DefectiveNode::read(Instant time) {
   if (defects_.sent.empty() && std::ranges::none_of(defects_.quirks, says)) return node_.read(time);
   const bool is_byte = find_reading(node_.selected())->kind == ReadKind::kByte;
   if (bytes.empty() || is_byte) say(time);
-  const auto place = transaction_.read++ % kWrap;
-  if (is_byte) return bytes[0];
-  return place < bytes.size() ? bytes[place] : std::byte{};
+  const auto place = is_byte ? 0 : transaction_.read++ % kWrap;
+  const auto byte_of = [place](Bytes answer) {
+    return place < answer.size() ? answer[place] : std::byte{};
+  };
+  // What no fault changes may change by itself while it is read.
+  const auto byte = node_.read(time);
+  return byte_of(bytes) == byte_of(transaction_.truth) ? byte : byte_of(bytes);
 }
 
-/// All of an answer at the time of its first byte.
+/// All of an answer at the time of its first byte, which is still to be read then.
 void DefectiveNode::say(Instant time) {
   const auto selected = node_.selected();
   auto& bytes = transaction_.bytes;
@@ -186,6 +190,7 @@ void DefectiveNode::say(Instant time) {
     return wire_size(is_position ? node_.position_set() : node_.speed_set());
   }();
   for (std::size_t i = 0; i < size; ++i) bytes.push_back(node_.read(time));
+  transaction_.truth = bytes;
   for (std::size_t i = 0; i < defects_.sent.size(); ++i) {
     const auto& wrong = defects_.sent[i];
     if (wrong.id != selected) continue;
@@ -197,6 +202,7 @@ void DefectiveNode::say(Instant time) {
     const auto say = defects_.quirks[i]->say;
     if (say != nullptr) say(bytes, quirk_memories_[i], node_);
   }
+  node_.start(time, true);
 }
 
 void DefectiveNode::stop(Instant time) {

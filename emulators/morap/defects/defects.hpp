@@ -85,6 +85,7 @@ class DefectiveNode {
     bool is_done = false;  ///< the command is complete
     std::size_t read = 0;  ///< bytes
     std::vector<std::byte> bytes;
+    std::vector<std::byte> truth;  ///< of an answer, as the node would give it
   };
 
   void obey(Instant time);

@@ -17,8 +17,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-struct Plugged {
-  explicit Plugged(TinyUsbAdapter::Behaviour behaviour = {}) {
+struct PluggedAdapter {
+  explicit PluggedAdapter(TinyUsbAdapter::Behaviour behaviour = {}) {
     auto made =
         make_i2c_tiny_usb(std::make_unique<TinyUsbAdapter>(behaviour, log), "i2c-tiny-usb:");
     if (made) port = *std::move(made);
@@ -33,7 +33,7 @@ constexpr BusAddress kNode{0x12};
 constexpr BusAddress kNobody{0x13};
 
 TEST(I2cTinyUsb, CarriesWhatADriveSaysAndHears) {
-  const Plugged plugged;
+  const PluggedAdapter plugged;
   morap::drive::Master master{*plugged.port};
   morap::drive::Joint joint{master, kNode};
   EXPECT_EQ(joint.calibrate(morap::drive::Angle{1.0F}), morap::drive::BusCode::kOk);
@@ -42,10 +42,12 @@ TEST(I2cTinyUsb, CarriesWhatADriveSaysAndHears) {
   EXPECT_EQ(joint.own_address().value, 0x12);
 }
 
-TEST(I2cTinyUsb, SetsTheClockToAtMost100KilohertzFirst) { EXPECT_EQ(Plugged{}.log->delay, 5); }
+TEST(I2cTinyUsb, SetsTheClockToAtMost100KilohertzFirst) {
+  EXPECT_EQ(PluggedAdapter{}.log->delay, 5);
+}
 
 TEST(I2cTinyUsb, BeginsEachMessageAndEndsTheLast) {
-  const Plugged plugged;
+  const PluggedAdapter plugged;
   const std::array select{std::byte{0x88}};
   std::array<std::byte, 1> answer{};
   const std::array messages{write_to(kNode, select), read_from(kNode, answer)};
@@ -55,20 +57,20 @@ TEST(I2cTinyUsb, BeginsEachMessageAndEndsTheLast) {
 }
 
 TEST(I2cTinyUsb, TellsWhoIsNotThere) {
-  const Plugged plugged;
+  const PluggedAdapter plugged;
   const auto poke = write_to(kNobody, {});
   EXPECT_EQ(plugged.port->transfer({&poke, 1}), Transfer::kAddressRefused);
 }
 
 TEST(I2cTinyUsb, AShortTransferIsARefusedByte) {
-  const Plugged plugged{{.is_cut_short = true}};
+  const PluggedAdapter plugged{{.is_cut_short = true}};
   std::array<std::byte, 4> answer{};
   const auto read = read_from(kNode, answer);
   EXPECT_EQ(plugged.port->transfer({&read, 1}), Transfer::kByteRefused);
 }
 
 TEST(I2cTinyUsb, SaysThatItWasPulledOut) {
-  const Plugged plugged{{.trouble = ErrorCode::kDisconnected}};
+  const PluggedAdapter plugged{{.trouble = ErrorCode::kDisconnected}};
   const auto poke = write_to(kNode, {});
   EXPECT_EQ(plugged.port->transfer({&poke, 1}).error().code, ErrorCode::kDisconnected);
   morap::drive::Master master{*plugged.port};
@@ -76,13 +78,13 @@ TEST(I2cTinyUsb, SaysThatItWasPulledOut) {
 }
 
 TEST(I2cTinyUsb, RefusesADeviceThatIsNoSuchAdapter) {
-  const Plugged plugged{{.functions = std::byte{}}};
+  const PluggedAdapter plugged{{.functions = std::byte{}}};
   ASSERT_TRUE(plugged.problem);
   EXPECT_EQ(plugged.problem->code, ErrorCode::kUnsupported);
 }
 
 TEST(I2cTinyUsb, CannotBeLedByteByByte) {
-  const Plugged plugged;
+  const PluggedAdapter plugged;
   EXPECT_FALSE(plugged.port->has_operations());
   EXPECT_EQ(plugged.port->start(kNode, Access::kWrite).error().code, ErrorCode::kUnsupported);
 }

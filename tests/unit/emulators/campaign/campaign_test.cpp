@@ -23,6 +23,7 @@ struct Asked {
   std::uint64_t cases = 60;
   std::uint64_t seed = 1;
   Known known{};
+  bool stops_at_first = true;
 };
 
 RigOptions emulated(const std::string& options) {
@@ -44,7 +45,7 @@ CampaignState run(const Asked& asked) {
                                 .judging = {device.make_dissector, {}, 20ms},
                                 .known = asked.known,
                                 .most_shrinking = 1h,
-                                .stops_at_first = true};
+                                .stops_at_first = asked.stops_at_first};
   EXPECT_TRUE(run_campaign(*stage, material, options, state, {}));
   return state;
 }
@@ -97,6 +98,24 @@ TEST(Campaign, TellsWhatIsKnown) {
   const auto state = run({"parol6", "quirk:steps-lost", 5, 1, *known});
   ASSERT_FALSE(state.findings.empty());
   EXPECT_EQ(state.findings.front().known, "all of it");
+}
+
+/// One that shows in each joint, whatever is done.
+TEST(Campaign, CountsADefectOnceInHoweverManyWaysItShows) {
+  const auto state = run({"parol6", "quirk:steps-lost", 60, 1, {}, false});
+  EXPECT_GT(state.findings.size(), 1U);
+  EXPECT_EQ(state.causes, 1U);
+}
+
+TEST(Campaign, DoesNotMakeOneOfTwoDefects) {
+  const auto state = run({"parol6", "quirk:steps-lost,zero:gripper.object", 40, 1, {}, false});
+  EXPECT_EQ(state.causes, 2U);
+}
+
+/// A faulty node differs from a sound one in its fault alone, so that a campaign finds no other.
+TEST(Campaign, FindsNothingInANodeWhoseFaultChangesNothing) {
+  const auto state = run({"morap", "out:stuck:own_address.own_address", 40});
+  EXPECT_TRUE(state.findings.empty()) << state.findings.front().sentence;
 }
 
 /// Somewhere where nobody is.
