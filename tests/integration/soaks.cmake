@@ -81,3 +81,9 @@ set_tests_properties(soak.trace PROPERTIES LABELS soak TIMEOUT 7200)
 add_test(NAME soak.unplug COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
                                   unplug 200)
 set_tests_properties(soak.unplug PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)
+
+# Some ten minutes: campaigns find ten defects for each device that its suite does not see.
+add_test(NAME soak.rare_defects
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/rare_defects_soak.py
+                 $<TARGET_FILE:armjig> ${PROJECT_SOURCE_DIR})
+set_tests_properties(soak.rare_defects PROPERTIES LABELS soak TIMEOUT 3600)
