@@ -79,7 +79,7 @@ struct FuzzOptions {
 /// Virtual time is for nothing, that of a live device is not.
 constexpr Duration kLongestEmulated = std::chrono::seconds{60};
 constexpr Duration kLongestLive = std::chrono::seconds{6};
-constexpr auto kShrinkingEmulated = std::chrono::seconds{15};
+constexpr auto kShrinkingEmulated = std::chrono::seconds{30};
 constexpr auto kShrinkingLive = std::chrono::seconds{60};
 constexpr std::size_t kCasesBetweenResetsLive = 8;
 /// For what is said after the last record.

@@ -22,6 +22,20 @@ constexpr std::size_t kMostBytes = 4096;  ///< of one record
 /// What buses of Linux carry in one transaction.
 constexpr std::int64_t kMostBusBytes = 255;
 
+/// As often below an eighth of the way as above half of it, also where the way is short.
+std::int64_t mostly_few(Dice& dice, std::int64_t least, std::int64_t most) {
+  constexpr std::int64_t kWay = 1000;
+  const auto way = dice.between(0, kWay);
+  return least + (most - least) * way / kWay * way / kWay * way / kWay;
+}
+
+/// How often something is repeated. Counters turn over at powers of two, so now and then so often.
+std::size_t some_count(Dice& dice) {
+  constexpr std::array<std::int64_t, 3> kTurns{257, 1025, 1200};
+  const auto most = dice.one_in(12) ? dice.one_of(kTurns) : mostly_few(dice, 2, 60);
+  return static_cast<std::size_t>(dice.one_in(2) ? most : dice.between(1, most));
+}
+
 /// The places of the records that send bytes.
 std::vector<std::size_t> sent_in(const Script& script) {
   std::vector<std::size_t> places;
@@ -111,7 +125,7 @@ Script Author::draw(std::uint64_t seed, const std::vector<Script>& worthy) const
   auto script = is_fresh ? fresh(dice) : dice.one_of(worthy);
   if (!is_fresh && dice.one_in(5)) script = joined(std::move(script), dice.one_of(worthy), 10ms);
   const auto changes =
-      is_fresh && material_.draw_session != nullptr ? dice.between(0, 1) : dice.mostly_low(1, 12);
+      is_fresh && material_.draw_session != nullptr ? dice.between(0, 1) : mostly_few(dice, 1, 12);
   for (auto left = changes; left > 0 && !script.empty(); --left) {
     const auto change = dice.weighted(kChanges, [](const auto& one) { return one.first; }).second;
     (this->*change)(dice, script);
@@ -130,8 +144,8 @@ Script Author::fresh(Dice& dice) const {
 
 Script Author::harmless_ones(Dice& dice) const {
   Script script;
-  const auto pause = dice.mostly_low(1'000, 100'000);
-  for (auto left = dice.mostly_low(1, 60); left > 0; --left) {
+  const auto pause = mostly_few(dice, 1'000, 100'000);
+  for (auto left = mostly_few(dice, 1, 60); left > 0; --left) {
     script = joined(std::move(script), material_.harmless, std::chrono::microseconds{pause});
   }
   return script;
@@ -161,7 +175,7 @@ void Author::change_field(Dice& dice, Script& script) const {
 void Author::change_bytes(Dice& dice, Script& script) const {
   auto* const record = some_sent(dice, script);
   if (record == nullptr) return;
-  for (auto left = dice.mostly_low(1, 8); left > 0; --left) {
+  for (auto left = mostly_few(dice, 1, 8); left > 0; --left) {
     auto& byte = dice.one_of(record->bytes);
     byte = dice.one_in(2) ? dice.byte()
                           : byte ^ static_cast<std::byte>(1U << dice.number<unsigned>(0, 7));
@@ -194,17 +208,15 @@ void Author::split(Dice& dice, Script& script) const {
   record->bytes.resize(static_cast<std::size_t>(size));
   script.insert(script.begin() + place + 1, std::move(rest));
   shift_from(script, static_cast<std::size_t>(place) + 1,
-             std::chrono::microseconds{dice.mostly_low(0, 20'000)});
+             std::chrono::microseconds{mostly_few(dice, 0, 20'000)});
 }
 
 void Author::repeat(Dice& dice, Script& script) const {
   const auto* const record = some_sent(dice, script);
   if (record == nullptr) return;
-  // Counters turn over at powers of two, so now and then so often.
-  const auto most = dice.one_in(4) ? 1200 : 40;
-  const auto count = dice.number<std::size_t>(1, dice.mostly_low(2, most));
+  const auto count = some_count(dice);
   const auto place = static_cast<std::size_t>(record - script.data());
-  const auto pause = std::chrono::microseconds{dice.mostly_low(500, 20'000)};
+  const auto pause = std::chrono::microseconds{mostly_few(dice, 500, 20'000)};
   auto last = place;
   if (record->kind == LinkKind::kBus && place + 1 < script.size() &&
       script[place + 1].kind == LinkKind::kBus && !is_sent(script[place + 1])) {
@@ -227,7 +239,7 @@ void Author::repeat(Dice& dice, Script& script) const {
 
 void Author::leave_out(Dice& dice, Script& script) const {
   const auto first = static_cast<std::ptrdiff_t>(some_place(dice, script));
-  const auto count = std::min(dice.mostly_low(1, 50), std::ssize(script) - first);
+  const auto count = std::min(mostly_few(dice, 1, 50), std::ssize(script) - first);
   script.erase(script.begin() + first, script.begin() + first + count);
 }
 
@@ -239,13 +251,13 @@ void Author::swap(Dice& dice, Script& script) const {
 }
 
 void Author::move_time(Dice& dice, Script& script) const {
-  const auto by = std::chrono::microseconds{dice.one_in(3) ? -dice.mostly_low(1, 1'000'000)
-                                                           : dice.mostly_low(1, 1'000'000)};
+  const auto by = std::chrono::microseconds{dice.one_in(3) ? -mostly_few(dice, 1, 1'000'000)
+                                                           : mostly_few(dice, 1, 1'000'000)};
   shift_from(script, some_place(dice, script), by);
 }
 
 void Author::hurry(Dice& dice, Script& script) const {
-  const auto longest = std::chrono::microseconds{dice.mostly_low(0, 20'000)};
+  const auto longest = std::chrono::microseconds{mostly_few(dice, 0, 20'000)};
   Duration saved{};
   Instant last{};
   for (auto& record : script) {

@@ -32,8 +32,8 @@ struct CampaignOptions {
   std::size_t cases_between_resets = 1;  ///< at least 1; where resetting makes the target new
   int confirmations = 1;  ///< so often a symptom has to come again, before and after shrinking
   std::size_t most_attempts = 20'000;  ///< at shrinking one finding
-  Duration most_shrinking{};         ///< time for one finding, by the wall clock
-  bool stops_at_first = false;       ///< finding that is news
+  Duration most_shrinking{};           ///< time for one finding, by the wall clock
+  bool stops_at_first = false;         ///< finding that is news
   std::function<bool()> must_stop = [] { return false; };
 };
 

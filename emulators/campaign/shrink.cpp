@@ -31,6 +31,48 @@ class Shrinking {
     }
   }
 
+  /// Without its end: by halves, which may leave more than it has to.
+  void cut_end() {
+    std::size_t shows_not = 0;
+    for (auto size = script_.size() / 2; size > shows_not && may_go_on_();
+         size = (shows_not + script_.size()) / 2) {
+      auto other = script_;
+      other.resize(size);
+      if (!try_instead(std::move(other))) shows_not = size;
+    }
+  }
+
+  /// What counts messages may count harmless ones, too: as few of them as do, in place of all but
+  /// the last few records.
+  void count(const Script& plain) {
+    constexpr std::size_t kWorthIt = 100;
+    constexpr std::array<std::size_t, 3> kTails{1, 4, 12};
+    for (const auto tail : kTails) {
+      if (script_.size() < kWorthIt) return;
+      const auto full = script_;
+      const auto most = (full.size() - tail) / std::max<std::size_t>(plain.size(), 1);
+      const auto counted = [&](std::size_t times) {
+        Script other;
+        for (std::size_t i = 0; i < times; ++i) other = appended(std::move(other), plain);
+        return appended(std::move(other),
+                        Script(full.end() - static_cast<std::ptrdiff_t>(tail), full.end()));
+      };
+      if (!try_instead(counted(most))) continue;
+      std::size_t shows_not = 0;
+      for (auto shows = most; shows - shows_not > 1 && may_go_on_();) {
+        const auto times = (shows + shows_not) / 2;
+        (try_instead(counted(times)) ? shows : shows_not) = times;
+      }
+    }
+  }
+
+  /// Messages in one piece that came in several.
+  void join() {
+    for (std::size_t i = 0; i < script_.size() && may_go_on_(); ++i) {
+      if (const auto count = pieces_at(i); count > 1) (void)try_instead(with_joined(i, count));
+    }
+  }
+
   /// All pauses at most so long.
   void hurry() {
     constexpr std::array<Duration, 3> kLongest{1ms, 10ms, 100ms};
@@ -67,6 +109,50 @@ class Shrinking {
       (void)try_instead(std::move(other));
       end = begin;
     }
+  }
+
+  /// `more` in its own pace, a little later.
+  static Script appended(Script script, const Script& more) {
+    if (more.empty()) return script;
+    const auto shift = (script.empty() ? Instant{} : script.back().time + 1ms) - more.front().time;
+    for (auto record : more) {
+      record.time += shift;
+      script.push_back(std::move(record));
+    }
+    return script;
+  }
+
+  /// How many records from there on are one message together; 0: none are.
+  [[nodiscard]] std::size_t pieces_at(std::size_t place) const {
+    constexpr std::size_t kMostPieces = 128;
+    const auto& first = script_[place];
+    if (first.kind == LinkKind::kBus) return 0;
+    const auto dissector = make_dissector_();
+    std::vector<Message> messages;
+    std::size_t size = 0;
+    for (auto i = place; i < std::min(script_.size(), place + kMostPieces); ++i) {
+      const auto& piece = script_[i];
+      if (!is_sent(piece) || piece.kind != first.kind || piece.id != first.id) return 0;
+      size += piece.bytes.size();
+      dissector->feed(Direction::kToDevice, piece.time, piece.bytes, messages);
+      if (messages.empty()) continue;
+      const bool is_one = messages.size() == 1 && messages.front().fault.empty() &&
+                          messages.front().raw.size() == size;
+      return is_one ? i - place + 1 : 0;
+    }
+    return 0;
+  }
+
+  [[nodiscard]] Script with_joined(std::size_t place, std::size_t count) const {
+    auto other = script_;
+    const auto first = other.begin() + static_cast<std::ptrdiff_t>(place);
+    const auto end = first + static_cast<std::ptrdiff_t>(count);
+    first->time = (end - 1)->time;
+    for (auto piece = first + 1; piece != end; ++piece) {
+      first->bytes.insert(first->bytes.end(), piece->bytes.begin(), piece->bytes.end());
+    }
+    other.erase(first + 1, end);
+    return other;
   }
 
   [[nodiscard]] Script with_pauses(Duration longest) const {
@@ -139,9 +225,13 @@ class Shrinking {
 Script shrink(Script script, const Script& plain, MakeDissector make_dissector, const Shows& shows,
               const std::function<bool()>& may_go_on) {
   Shrinking shrinking{std::move(script), make_dissector, shows, may_go_on};
+  shrinking.cut_end();
   shrinking.hurry();
+  shrinking.join();
+  shrinking.count(plain);
   while (shrinking.leave_out()) {
   }
+  shrinking.join();
   shrinking.hurry();
   shrinking.simplify(plain);
   (void)shrinking.leave_out();

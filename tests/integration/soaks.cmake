@@ -90,3 +90,9 @@ endforeach()
 add_test(NAME soak.kernel_round_trip COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
                                              roundtrip)
 set_tests_properties(soak.kernel_round_trip PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)
+
+# Some ten minutes: campaigns find ten defects for each device that its suite does not see.
+add_test(NAME soak.rare_defects
+         COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/rare_defects_soak.py
+                 $<TARGET_FILE:armjig> ${PROJECT_SOURCE_DIR})
+set_tests_properties(soak.rare_defects PROPERTIES LABELS soak TIMEOUT 3600)

@@ -181,9 +181,10 @@ bool add_figure(std::string_view text, const Draft& draft) {
   return found != nullptr;
 }
 
+template <auto all>
 bool add_quirk(std::string_view text, const Draft& draft) {
-  const auto found = std::ranges::find(quirks(), text, &Quirk::name);
-  if (found == quirks().end()) return false;
+  const auto found = std::ranges::find(all(), text, &Quirk::name);
+  if (found == all().end()) return false;
   draft.quirks.push_back(*found);
   return true;
 }
@@ -202,7 +203,8 @@ constexpr std::array kForms{
     Named<Add>{"first-point", add_first_point},
     Named<Add>{"behaviour", add_behaviour},
     Named<Add>{"figure", add_figure},
-    Named<Add>{"quirk", add_quirk},
+    Named<Add>{"quirk", add_quirk<&quirks>},
+    Named<Add>{"rare", add_quirk<&rare_quirks>},
 };
 
 /// Where a verb leads in the states that accept it.

@@ -23,6 +23,7 @@ namespace armjig::kinovazed::emulation {
 ///     behaviour:NAME                 one difference of the profile turned round
 ///     figure:NAME                    a wrong time or distance
 ///     quirk:NAME                     a behaviour that was written by hand
+///     rare:NAME                      one that no suite asks for
 ///
 /// Problems: `kBadValue`.
 [[nodiscard]] Outcome<void> add_fault(std::string_view text, ServerOptions& options,

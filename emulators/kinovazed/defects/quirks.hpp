@@ -42,4 +42,8 @@ struct Quirk {
 /// Those that were written by hand.
 [[nodiscard]] std::span<const Quirk> quirks();
 
+/// Those in corners that no suite looks into; `rare:NAME`. They are not among `all_faults`, for
+/// they try campaigns, not suites.
+[[nodiscard]] std::span<const Quirk> rare_quirks();
+
 }  // namespace armjig::kinovazed::emulation

@@ -194,6 +194,9 @@ bool add_pen(std::string_view text, NodeSetup& /*setup*/, Defects& defects) {
 bool add_quirk(std::string_view text, NodeSetup&, Defects& defects) {
   return choose_named(quirks(), text, defects.quirks);
 }
+bool add_rare(std::string_view text, NodeSetup&, Defects& defects) {
+  return choose_named(rare_quirks(), text, defects.quirks);
+}
 
 constexpr std::array kWords{Named<Add>{"in", add_heard},
                             Named<Add>{"out", add_sent},
@@ -202,6 +205,7 @@ constexpr std::array kWords{Named<Add>{"in", add_heard},
                             Named<Add>{"eeprom", add_spoilt<kConstants>},
                             Named<Add>{"profile", add_spoilt<kDifferences>},
                             Named<Add>{"quirk", add_quirk},
+                            Named<Add>{"rare", add_rare},
                             Named<Add>{"pen", add_pen}};
 
 // The list of all.

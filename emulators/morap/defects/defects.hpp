@@ -45,6 +45,7 @@ struct Defects {
 ///     eeprom:NAME               a constant or stored parameter is another one
 ///     profile:NAME              one difference of the profile turned round
 ///     quirk:NAME                a wrong behaviour
+///     rare:NAME                 one that no suite asks for
 ///     pen:NAME                  a wrong behaviour of the pen
 ///
 /// Problems: `kBadValue`.

@@ -41,4 +41,8 @@ struct Quirk {
 
 [[nodiscard]] std::span<const Quirk> quirks() noexcept;
 
+/// Those in corners that no suite looks into; `rare:NAME`. They are not among `all_faults`, for
+/// they try campaigns, not suites.
+[[nodiscard]] std::span<const Quirk> rare_quirks() noexcept;
+
 }  // namespace armjig::morap::emulation

@@ -101,6 +101,10 @@ bool add_quirk(std::string_view text, ArmOptions& /*arm*/, Defects& defects) {
   return choose_named(quirks(), text, defects.quirks);
 }
 
+bool add_rare(std::string_view text, ArmOptions& /*arm*/, Defects& defects) {
+  return choose_named(rare_quirks(), text, defects.quirks);
+}
+
 bool add_profile(std::string_view text, ArmOptions& arm, Defects& /*defects*/) {
   const auto* const found = find_named(kSwitches, text);
   if (found == nullptr) return false;
@@ -156,7 +160,8 @@ constexpr std::array kWords{Named<Add>{"row", add_row},         Named<Add>{"deaf
                             Named<Add>{"ears", add_ears},       Named<Add>{"quirk", add_quirk},
                             Named<Add>{"profile", add_profile}, Named<Add>{"homing", add_homing},
                             Named<Add>{"demo", add_demo},       Named<Add>{"plant", add_plant},
-                            Named<Add>{"timer", add_timer},     Named<Add>{"check", add_check}};
+                            Named<Add>{"timer", add_timer},     Named<Add>{"check", add_check},
+                            Named<Add>{"rare", add_rare}};
 
 // The list of all.
 

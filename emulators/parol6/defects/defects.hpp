@@ -51,7 +51,8 @@ struct Defects {
 /// - `in.KIND:FIELD`: a field of command frames.
 /// - `row:STATE.CODE.CODE`: in a state a code acts as another, or, with `kept`, as the one before.
 /// - `deaf:outputs.CODE`: outputs, or `gripper`, are not taken from frames of that code.
-/// - `ears:NAME`, `quirk:NAME`: a defect of reception, a wrong behaviour.
+/// - `ears:NAME`, `quirk:NAME`, `rare:NAME`: a defect of reception, a wrong behaviour, one that no
+///   suite asks for.
 /// - `profile:NAME`: one difference of the profile turned round.
 /// - `homing:jN.FIGURE`, `demo:jN.FIGURE`: a wrong figure.
 /// - `plant:mirrored.jN`, `timer:BITS`: an axis that turns the wrong way, a narrower timer.

@@ -35,6 +35,8 @@ struct Quirk {
               const Board& board){};
 };
 
+/// `rare:NAME`: no suite finds them, and no catalogue names them; they try campaigns.
+[[nodiscard]] std::span<const Quirk> rare_quirks() noexcept;
 [[nodiscard]] std::span<const Quirk> quirks() noexcept;
 
 }  // namespace armjig::parol6::emulation

@@ -74,7 +74,7 @@ TEST(Campaign, FindsADefectOfAServer) {
 }
 
 TEST(Campaign, FindsADefectOnABus) {
-  const auto state = run({"morap", "quirk:checksum-ignored"});
+  const auto state = run({"morap", "quirk:checksum-ignored", 300, 2});
   ASSERT_EQ(state.findings.size(), 1U);
   EXPECT_LE(state.findings.front().size, 5U);
 }
