@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
+#include <tuple>
 
 #include "harness/core/number.hpp"
 
@@ -11,7 +11,8 @@ namespace armjig {
 namespace {
 
 bool is_meant(const Suite& suite, const Case& one, Profile profile, const Selection& selection) {
-  return holds_in(requirement_of(suite, one).profiles, profile) && one.tier <= selection.tier &&
+  return holds_in(requirement_of(suite, one).profiles, profile) &&
+         (one.tier <= selection.tier || is_vital(suite, one)) &&
          name_of(one).find(selection.filter) != std::string::npos;
 }
 
@@ -35,8 +36,8 @@ std::vector<const Case*> select(const Suite& suite, Profile profile, const Selec
       if (is_meant(suite, one, profile, selection)) cases.push_back(&one);
     }
   }
-  std::ranges::stable_sort(cases, {}, [](const Case* one) {
-    return std::pair{one->hazard == Hazard::kCrash, one->start};
+  std::ranges::stable_sort(cases, {}, [&](const Case* one) {
+    return std::tuple{one->hazard == Hazard::kCrash, one->start, !is_vital(suite, *one)};
   });
   const auto border = [&](std::size_t shards) {
     return static_cast<std::ptrdiff_t>(cases.size() * shards / selection.shard.count);

@@ -30,8 +30,9 @@ struct Selection {
 };
 
 /// The cases of the profile that are meant, in the order in which they are best run: those with
-/// the same start state together, and those last that end or hang the device's program. Shards are
-/// stretches of that order; together they have every case once.
+/// the same start state together, of these first what safety rests on, and those last that end or
+/// hang the device's program. Shards are stretches of that order; together they have every case
+/// once.
 [[nodiscard]] std::vector<const Case*> select(const Suite& suite, Profile profile,
                                               const Selection& selection);
 

@@ -63,4 +63,10 @@ const Requirement& requirement_of(const Suite& suite, const Case& one) noexcept 
   return *find_requirement(suite, one.requirement);
 }
 
+bool is_vital(const Suite& suite, const Case& one) {
+  return std::ranges::any_of(suite.vital, [name = name_of(one)](std::string_view piece) {
+    return name.find(piece) != std::string::npos;
+  });
+}
+
 }  // namespace armjig

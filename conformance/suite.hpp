@@ -102,7 +102,13 @@ struct Suite {
   std::span<const StartState> starts;
   Document document{};                  ///< none: reports name no place
   std::span<const Subject> subjects{};  ///< none: differences are told by field only
+  /// Pieces of names of cases: what safety rests on, such as all ways to stop. They belong to every
+  /// tier, and of those with the same start state they come first.
+  std::span<const std::string_view> vital{};
 };
+
+/// Whether safety rests on what the case checks.
+[[nodiscard]] bool is_vital(const Suite& suite, const Case& one);
 
 /// The requirement of that id, or nullptr.
 [[nodiscard]] const Requirement* find_requirement(const Suite& suite, std::string_view id) noexcept;

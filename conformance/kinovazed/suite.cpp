@@ -2,6 +2,7 @@
 #include "conformance/kinovazed/suite.hpp"
 
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include "conformance/kinovazed/chapters.hpp"
@@ -39,6 +40,10 @@ constexpr std::array kSubjects{
     Subject{"ObjectiveDone", "time", "kinovazed.objective.takes-its-time"},
 };
 
+/// All ways to stop, from every state.
+constexpr auto kVital =
+    std::to_array<std::string_view>({".estop", ".interrupt.mode-stops", ".stopped-by-"});
+
 }  // namespace
 
 Suite suite() noexcept {
@@ -58,7 +63,7 @@ Suite suite() noexcept {
       chapter("Client programs", programs::host_requirements()),
   };
   return {"kinovazed", "0.3", kChapters, kStarts, shipped_document("docs/spec/kinovazed.md"),
-          kSubjects};
+          kSubjects,   kVital};
 }
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<SessionSource> rig, const RigOptions& how) {

@@ -2,6 +2,7 @@
 #include "conformance/morap/suite.hpp"
 
 #include <array>
+#include <string_view>
 
 #include "conformance/morap/chapters.hpp"
 #include "conformance/morap/host/check.hpp"
@@ -32,6 +33,11 @@ constexpr std::array kSubjects{
     Subject{"speed_set", "checksum", "morap.read.set-checksum"},
 };
 
+/// All ways to stop, from every state.
+constexpr auto kVital = std::to_array<std::string_view>({".voltage.disabled", ".voltage.forgotten",
+                                                         ".voltage.uncalibrated",
+                                                         ".motion.disabled", ".motion.latched"});
+
 }  // namespace
 
 Suite suite() noexcept {
@@ -41,7 +47,8 @@ Suite suite() noexcept {
       tune_chapter(),       loop_chapter(),    motion_chapter(),
       documented_chapter(), pen_chapter(),     chapter("Masters", programs::host_requirements()),
   };
-  return {"morap", "0.3", kChapters, kStarts, shipped_document("docs/spec/morap.md"), kSubjects};
+  return {"morap",   "0.3", kChapters, kStarts, shipped_document("docs/spec/morap.md"),
+          kSubjects, kVital};
 }
 
 }  // namespace armjig::morap::conformance

@@ -2,6 +2,7 @@
 #include "conformance/parol6/suite.hpp"
 
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include "conformance/parol6/board_bench.hpp"
@@ -38,6 +39,12 @@ constexpr std::array kSubjects{
     Subject{"telemetry", "check", "parol6.telemetry.check"},
 };
 
+/// All ways to stop, from every state.
+constexpr auto kVital = std::to_array<std::string_view>(
+    {".command.disable-stops", ".command.enable-stops", ".command.clear-stops", ".command.idle-st",
+     ".command.unknown", ".command.disabled-", ".goto.stops", ".home.ended-by-", ".io.estop-",
+     ".gripper.stop", ".gripper.while-disabled"});
+
 }  // namespace
 
 Suite suite() noexcept {
@@ -48,7 +55,8 @@ Suite suite() noexcept {
       go_to_chapter(), home_chapter(),    home_run_chapter(),
       demo_chapter(),  gripper_chapter(), chapter("Host programs", programs::host_requirements()),
   };
-  return {"parol6", "0.3", kChapters, kStarts, shipped_document("docs/spec/parol6.md"), kSubjects};
+  return {"parol6",  "0.3", kChapters, kStarts, shipped_document("docs/spec/parol6.md"),
+          kSubjects, kVital};
 }
 
 Outcome<std::unique_ptr<Bench>> make_bench(Rig<StreamPort> rig, const RigOptions& /*how*/) {

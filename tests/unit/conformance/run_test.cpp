@@ -5,11 +5,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "conformance/kinovazed/suite.hpp"
+#include "conformance/morap/suite.hpp"
+#include "conformance/parol6/suite.hpp"
 namespace armjig {
 namespace {
 
@@ -527,6 +533,34 @@ TEST(ConformanceSelection, LeavesOutWhatTakesLongInTheQuickTier) {
   const auto quick = names(select(kSuite, Profile::kFirmware, {.tier = Tier::kQuick}));
   EXPECT_FALSE(quick.contains("n.quiet"));
   EXPECT_TRUE(quick.contains("n.pass"));
+}
+
+TEST(ConformanceSelection, TakesWhatSafetyRestsOnFirstAndInEveryTier) {
+  constexpr std::array<std::string_view, 2> kVital{"n.beyond.b", ".quiet"};
+  const Suite suite{"n", "7", kChapters, kStarts, {}, {}, kVital};
+  const auto place = [](const auto& cases, std::string_view name) {
+    return std::ranges::find(cases, name, [](const Case* one) { return name_of(*one); }) -
+           cases.begin();
+  };
+  for (const auto tier : {Tier::kQuick, Tier::kFull}) {
+    const auto cases = select(suite, Profile::kFirmware, {.tier = tier});
+    EXPECT_EQ(place(cases, "n.quiet"), 0);
+    EXPECT_LT(place(cases, "n.beyond.b"), place(cases, "n.beyond.a"));
+    EXPECT_LT(place(cases, "n.too"), place(cases, "n.beyond.b"));
+  }
+}
+
+/// A piece of a name that no case has any longer would be no way to stop.
+TEST(ConformanceSelection, EveryVitalPieceNamesACase) {
+  for (const auto& suite : {parol6::conformance::suite(), morap::conformance::suite(),
+                            kinovazed::conformance::suite()}) {
+    const auto quick = names(select(suite, Profile::kFirmware, {.tier = Tier::kQuick}));
+    for (const auto piece : suite.vital) {
+      EXPECT_TRUE(std::ranges::any_of(
+          quick, [&](const std::string& name) { return name.find(piece) != name.npos; }))
+          << suite.device << " " << piece;
+    }
+  }
 }
 
 TEST(ConformanceSelection, ReadsShards) {
