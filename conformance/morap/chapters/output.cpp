@@ -78,6 +78,14 @@ constexpr Case driven(std::string_view rule, CaseBody run) {
   return from(kDisabled, Hazard::kMove, rule, run);
 }
 
+/// On a shaft that may turn, a voltage that does it no harm.
+void expect_direct_settled(NodeBench& node, float volts, int levels) {
+  node.about(fmt::format("asked for {} V", volts));
+  node.send(kDirectVoltage, volts);
+  node.settle();
+  node.expect_levels(levels);
+}
+
 constexpr Clause kOutputClauses[] = {
     must("morap.voltage.close", "A drive voltage inside the limits is applied to within 0.05 V.",
          "document, applied voltage; firmware: a step is 0.046875 V"),
@@ -230,6 +238,16 @@ constexpr Clause kOutputClauses[] = {
             expect_direct(node, 12.0F, 256);
             expect_direct(node, -15.0F, -320);
           }),
+    variant("turning", driven("Up to 1.5 V, whether the shaft turns or not.",
+                              [](NodeBench& node) {
+                                expect_direct_settled(node, 0.0234F, 0);
+                                expect_direct_settled(node, 0.0235F, 1);
+                                expect_direct_settled(node, -0.0234F, 0);
+                                expect_direct_settled(node, -0.0235F, -1);
+                                expect_direct_settled(node, 1.5F, 32);
+                                expect_direct_settled(node, -1.5F, -32);
+                                node.send(kDisable);
+                              })),
 
     must("morap.direct.infinite", "An infinite direct voltage is one of 20 V.",
          "reference, voltage quantisation", Profiles::kFirmware),
