@@ -93,7 +93,7 @@ Words values_of(const CLI::App& command, const CLI::Option& option, Devices devi
   if (name == "--allow") return permissions(typed);
   Words words;
   if (name == "DEVICE") add_names(words, devices, &Device::name);
-  if (name == "--listen") words = {"i2c:", "pty:", "tcp:"};
+  if (name == "--listen") words = {"i2c:", "pty:", "rfc2217:", "tcp:"};
   if (name == "--arm") add_names(words, arm::models(), &arm::ModelEntry::name);
   if (device == nullptr) return words;
   if (name == "--set") return settings(*device, typed, "");

@@ -140,7 +140,8 @@ void add_record(CLI::App& app, Devices devices, Action& action) {
   add_device_argument(*command, options->device, devices);
   command
       ->add_option("--listen", options->listen,
-                   "where the program finds it: pty:[PATH], tcp:[HOST:]PORT, i2c:N")
+                   "where the program finds it: pty:[PATH], tcp:[HOST:]PORT, "
+                   "rfc2217:[HOST:]PORT, i2c:N")
       ->type_name("PLACE")
       ->required();
   command->add_option("--target", options->target, "where the device is, as everywhere")

@@ -107,7 +107,8 @@ void add_replay(CLI::App& app, Devices devices, Action& action) {
   add_target_options(*command, options->target);
   auto* listen = command
                      ->add_option("--listen", options->listen,
-                                  "play the device there: pty:[PATH], tcp:[HOST:]PORT, i2c:N")
+                                  "play the device there: pty:[PATH], tcp:[HOST:]PORT, "
+                                  "rfc2217:[HOST:]PORT, i2c:N")
                      ->type_name("PLACE");
   for (const auto* name : {"--target", "--allow", "--impair", "--capture"}) {
     listen->excludes(command->get_option(name));

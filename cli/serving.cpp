@@ -101,6 +101,45 @@ std::optional<TcpOptions> parse_tcp_place(std::string_view text) {
   return tcp;
 }
 
+/// Shortens `place` by `scheme` if it starts with it.
+bool takes(std::string_view& place, std::string_view scheme) {
+  if (!place.starts_with(scheme)) return false;
+  place.remove_prefix(scheme.size());
+  return true;
+}
+
+// What a place says depends on the kind of port. Each returns a hint if the place is not for it.
+
+std::string_view take_place(const OnBus& /*kind*/, std::string_view place, Serving& serving) {
+  constexpr int kLastBus = 255;
+  if (!takes(place, "i2c:")) return "this device is on a bus: write i2c:N";
+  (void)takes(place, "/dev/i2c-");
+  const auto number = whole_text_as<int>(place);
+  if (!number || *number < 0 || *number > kLastBus) return "write i2c:N, 0 to 255";
+  serving.bus = *number;
+  return {};
+}
+
+std::string_view take_place(const OnServer& /*kind*/, std::string_view place, Serving& serving) {
+  if (takes(place, "tcp:")) serving.how.tcp = parse_tcp_place(place);
+  if (serving.how.tcp) return {};
+  return "it is a TCP server and has no pseudo-terminal or serial port: write tcp:PORT or "
+         "tcp:HOST:PORT";
+}
+
+std::string_view take_place(const OnStream& /*kind*/, std::string_view place, Serving& serving) {
+  if (takes(place, "pty:")) {
+    serving.how.pty = PtyOptions{std::string{place}};
+  } else if (takes(place, "tcp:")) {
+    serving.how.tcp = parse_tcp_place(place);
+  } else if (takes(place, "rfc2217:")) {
+    serving.how.rfc2217 = parse_tcp_place(place);
+    if (serving.how.rfc2217) serving.how.rfc2217->protocol = TcpOptions::Protocol::kRfc2217;
+  }
+  if (serving.how.pty || serving.how.tcp || serving.how.rfc2217) return {};
+  return "write pty:, pty:PATH, tcp:PORT, tcp:HOST:PORT, rfc2217:PORT or rfc2217:HOST:PORT";
+}
+
 }  // namespace
 
 HostOptions server_options() {
@@ -121,33 +160,10 @@ usb::Identity usb_identity(const Device& device, std::optional<UsbId> numbers) {
 }
 
 Outcome<Serving> parse_listen(const std::string& listen, const Device& device) {
-  constexpr int kLastBus = 255;
   Serving serving{.device = std::string{device.name}, .how = server_options()};
-  std::string_view place = listen;
-  const auto takes = [&place](std::string_view scheme) {
-    if (!place.starts_with(scheme)) return false;
-    place.remove_prefix(scheme.size());
-    return true;
-  };
-  if (std::holds_alternative<OnBus>(device.port)) {
-    if (!takes("i2c:")) return bad_place(listen, "this device is on a bus: write i2c:N");
-    (void)takes("/dev/i2c-");
-    const auto number = whole_text_as<int>(place);
-    if (!number || *number < 0 || *number > kLastBus) {
-      return bad_place(listen, "write i2c:N, 0 to 255");
-    }
-    serving.bus = *number;
-  } else if (takes("pty:")) {
-    if (std::holds_alternative<OnServer>(device.port)) {
-      return bad_place(listen, "it is a TCP server and has no pseudo-terminal: write tcp:PORT");
-    }
-    serving.how.pty = PtyOptions{std::string{place}};
-  } else if (takes("tcp:")) {
-    serving.how.tcp = parse_tcp_place(place);
-    if (!serving.how.tcp) return bad_place(listen, "write tcp:PORT or tcp:HOST:PORT");
-  } else {
-    return bad_place(listen, "write pty:, pty:PATH, tcp:PORT or tcp:HOST:PORT");
-  }
+  const auto hint =
+      std::visit([&](const auto& kind) { return take_place(kind, listen, serving); }, device.port);
+  if (!hint.empty()) return bad_place(listen, hint);
   return serving;
 }
 

@@ -31,8 +31,8 @@ struct Serving {
 /// those that pid.codes keeps for trials.
 [[nodiscard]] usb::Identity usb_identity(const Device& device, std::optional<UsbId> numbers);
 
-/// Where `--listen` says: `pty:[PATH]`, `tcp:[HOST:]PORT`, `i2c:N`. Problems: `kBadValue`, also for
-/// a place that is not for such a device.
+/// Where `--listen` says: `pty:[PATH]`, `tcp:[HOST:]PORT`, `rfc2217:[HOST:]PORT`, `i2c:N`.
+/// Problems: `kBadValue`, also for a place that is not for such a device.
 [[nodiscard]] Outcome<Serving> parse_listen(const std::string& listen, const Device& device);
 
 /// Says where it listens, and serves it until a signal comes. Lines on standard input do what can

@@ -44,7 +44,7 @@ SHELLS = {
 # What the program itself answers the scripts.
 ANSWERS = [
     (["conformance", ""], ["demo", "diff", "kinovazed", "morap", "mutants", "parol6"]),
-    (["record", "parol6", "--listen", ""], ["i2c:", "pty:", "tcp:"]),
+    (["record", "parol6", "--listen", ""], ["i2c:", "pty:", "rfc2217:", "tcp:"]),
     (["emulate", ""], ["demo", "kinovazed", "morap", "parol6"]),
     (["conformance", "mutants", "d"], ["demo"]),
     (["watch", "morap", "--target", ""],

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A client with nothing of ours drives the emulated PAROL6 board over its pseudo-terminal, and over
-RFC 2217 with no option that makes allowances for the server.
+RFC 2217 with no option that makes allowances for the server, also beside a recording.
 
 Only python3-serial and the frame layout of the board's document: 100 Hz frames built by hand, every
 answer checked, a jog that must move the joint by what it says, a stop that must end it.
 
     /usr/bin/python3 pyserial_client_test.py build/release/cli/armjig
 """
+import contextlib
+import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 try:
@@ -117,24 +120,40 @@ def check_modem_lines(port):
     port.rtscts = False
 
 
-def main():
-    program = subprocess.Popen([sys.argv[1], "emulate", "parol6", "--pty", "--rfc2217", "0"],
-                               stdout=subprocess.PIPE, text=True)
+@contextlib.contextmanager
+def armjig(places, *arguments):
+    """Runs it, and says where it listens: `places` lines."""
+    program = subprocess.Popen([sys.argv[1], *arguments], stdout=subprocess.PIPE, text=True)
     try:
-        path = program.stdout.readline().strip().removeprefix("listening pty:")
-        address = program.stdout.readline().strip().removeprefix("listening rfc2217:")
-        url = "rfc2217://" + address
-        for place in (path, path, url, url):  # and again, as a second client
-            with serial.serial_for_url(place, 3_000_000, timeout=10) as port:
-                if place == url:
-                    check_modem_lines(port)
-                moved, elapsed = check(port)
-                exchange(port, ENABLE)
-            print(f"jogged {moved} steps in {elapsed:.4f} s of the board's time over {place}")
+        yield [program.stdout.readline().strip().removeprefix("listening ") for _ in range(places)]
     finally:
         program.send_signal(signal.SIGTERM)
         exit_code = program.wait(timeout=30)
     assert exit_code == 0, exit_code
+
+
+def drive(place):
+    scheme, address = place.split(":", 1)
+    is_remote = scheme == "rfc2217"
+    url = "rfc2217://" + address if is_remote else address
+    with serial.serial_for_url(url, 3_000_000, timeout=10) as port:
+        if is_remote:
+            check_modem_lines(port)
+        moved, elapsed = check(port)
+        exchange(port, ENABLE)
+    print(f"jogged {moved} steps in {elapsed:.4f} s of the board's time over {url}")
+
+
+def main():
+    with armjig(2, "emulate", "parol6", "--pty", "--rfc2217", "0") as (pty, remote):
+        for place in (pty, pty, remote, remote):  # and again, as a second client
+            drive(place)
+    with tempfile.TemporaryDirectory() as folder:
+        recording = os.path.join(folder, "session.jsonl")
+        with armjig(1, "record", "parol6", "--listen", "rfc2217:0", "--target", "emulated:",
+                    "--out", recording) as (place,):
+            drive(place)
+        assert os.path.getsize(recording) > 10_000, "what passed is recorded"
 
 
 main()
