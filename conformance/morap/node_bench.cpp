@@ -223,6 +223,7 @@ const Motor& NodeBench::motor() {
 
 void NodeBench::power_up(std::int64_t shaft) {
   touch("shaft", shaft);
+  if (shaft != std::exchange(shaft_, shaft)) has_rested_ = false;
   touch("adc", 0);
   rate_hz_ = kIdleRateHz;
   next_tick_ = now() + tick_period(kIdleRateHz);
@@ -241,7 +242,7 @@ void NodeBench::bring_to(std::size_t start) {
     prepare(kCalibrationUnknown);
     prepare(kDefaultControllers);
     settle();
-    if (subject_.is_real) rest();
+    rest();
     return prepare(kCalibrateZero);
   }
   if (start == kProgrammable) keep_sets();
@@ -254,20 +255,51 @@ void NodeBench::bring_to(std::size_t start) {
   if (start != kUncalibrated) prepare(kCalibrateZero);
 }
 
-/// A shaft that was driven before comes to rest. One with little friction coasts for a while.
+/// Only a shaft that has rested before, and that gets no slower when nothing drives it, is held
+/// against the node: others are pulled by a load, or were turning before we came.
 void NodeBench::rest() {
+  auto left = watch_rest();
+  if (left.is_slower && has_rested_) {
+    brake();
+    left = watch_rest();
+  }
+  if (left.is_at_rest) has_rested_ = true;
+  if (left.is_at_rest || is_deaf()) return;
+  if (!has_rested_ || left.is_slower) {
+    return skip(
+        "needs a shaft that rests when nothing drives it; this one turns for more than 5 s");
+  }
+  fail("a shaft that comes to rest within 5 s of its mode being taken away",
+       fmt::format("it turned from {} to {} rad, and goes on", left.first, left.last));
+}
+
+NodeBench::Coasting NodeBench::watch_rest() {
+  constexpr float kClearly = 0.9F;  // reads come at uneven times
   const auto begin = now();
-  const float first = number(kReadAngle);
-  for (float before = first; !is_deaf();) {
+  Coasting seen{.first = number(kReadAngle)};
+  seen.last = seen.first;
+  std::optional<float> first_way;
+  while (!is_deaf()) {
     settle();
     const float angle = number(kReadAngle);
-    if (angle == before) return;
-    if (now() - begin >= kRestTime) {
-      return fail("a shaft that comes to rest within 5 s of its mode being taken away",
-                  fmt::format("it turned from {} to {} rad, and goes on", first, angle));
-    }
-    before = angle;
+    const float way = std::fabs(angle - seen.last);
+    seen.last = angle;
+    seen.is_at_rest = way == 0.0F;
+    seen.is_slower = way < kClearly * first_way.value_or(way);
+    if (!first_way) first_way = way;
+    if (seen.is_at_rest || now() - begin >= kRestTime) break;
   }
+  return seen;
+}
+
+/// With little friction a shaft that nothing drives coasts for long; one that is driven with 0 V
+/// does not.
+void NodeBench::brake() {
+  prepare(kCalibrateZero);
+  prepare(kVoltage, 0.0F);
+  pause(300ms);
+  prepare(kDisable);
+  prepare(kCalibrationUnknown);
 }
 
 void NodeBench::keep_sets() {

@@ -114,12 +114,23 @@ class NodeBench final : public BusBench {
   void prepare(const Command& command);
   void prepare(CommandId id) { prepare(Command{id}); }
   void prepare(CommandId id, float value) { prepare(Command{id, value}); }
+  /// How a shaft turned on when nothing drove it any more, rad.
+  struct Coasting {
+    float first = 0.0F;
+    float last = 0.0F;
+    bool is_at_rest = false;
+    bool is_slower = false;  ///< than it was when it was first looked at
+  };
   void rest();
+  [[nodiscard]] Coasting watch_rest();
+  void brake();
   void power_up(std::int64_t shaft);
 
   Subject subject_;
   bool is_found_ = false;
   std::array<std::vector<std::byte>, 2> kept_sets_;  ///< as they were before the first case
+  std::int64_t shaft_ = 1;                           ///< 0: held
+  bool has_rested_ = false;                          ///< while nothing drove it and nothing held it
   Instant next_tick_{};
   std::uint16_t rate_hz_ = 0;
 };

@@ -24,14 +24,35 @@ std::unique_ptr<NodeBench> free_node(std::string_view target) {
   return node;
 }
 
-TEST(NodeVerdicts, AShaftThatWillNotRestSaysSoAfterFiveSeconds) {
+TEST(NodeVerdicts, AShaftThatALoadTurnsIsNotHeldAgainstItsNode) {
   const auto node = free_node("emulated:?load=1");
+  const auto begin = node->now();
+  node->bring_to(kFree);
+  EXPECT_EQ(node->judgement().verdict, Verdict::kSkipped);
+  EXPECT_THAT(node->judgement().actual, HasSubstr("turns for more than 5 s"));
+  EXPECT_LT(node->now() - begin, 6s);
+}
+
+TEST(NodeVerdicts, AShaftThatIsDrivenOnSaysSoAfterFiveSeconds) {
+  const auto node = free_node("emulated:?fault=row:enabled.calibration_unknown.ignored");
+  node->bring_to(kFree);
+  node->send(CommandId::kVoltage, 3.0F);
+  node->pause(1s);
   const auto begin = node->now();
   node->bring_to(kFree);
   EXPECT_EQ(node->judgement().verdict, Verdict::kFail);
   EXPECT_THAT(node->judgement().expected, HasSubstr("comes to rest within 5 s"));
   EXPECT_THAT(node->judgement().actual, HasSubstr("goes on"));
   EXPECT_LT(node->now() - begin, 6s);
+}
+
+TEST(NodeVerdicts, AShaftThatCoastsForLongIsBraked) {
+  const auto node = free_node("emulated:?viscous=0.01");
+  node->bring_to(kFree);
+  node->send(CommandId::kVoltage, 3.0F);
+  node->pause(1s);
+  node->bring_to(kFree);
+  EXPECT_EQ(node->judgement().verdict, Verdict::kPass) << node->judgement().actual;
 }
 
 TEST(NodeVerdicts, AShaftThatWasDrivenIsWaitedFor) {
