@@ -355,15 +355,16 @@ void BoardBench::home() {
   walk_to_standby();
 }
 
-/// In pieces, for the board would close any distance in 10 ms if it could.
+/// In pieces, for the board would close any distance in 10 ms if it could. Each is counted from the
+/// one before and not from where the arm is, so that an arm that goes elsewhere is seen to stray.
 void BoardBench::walk_to_standby() {
-  constexpr int kPiece = 60;
-  constexpr int kMostPieces = 5000;
+  constexpr int kPiece = 30;
+  constexpr int kMostPieces = 10'000;
   auto position = ask(idle()).position;
+  auto target = position;
   for (int i = 0; i < kMostPieces && position != kStandby && !is_over() && !error(); ++i) {
-    auto target = position;
     for (std::size_t j = 0; j < kJointCount; ++j) {
-      target[j].value += std::clamp(kStandby[j].value - position[j].value, -kPiece, kPiece);
+      target[j].value += std::clamp(kStandby[j].value - target[j].value, -kPiece, kPiece);
     }
     position = ask(go_to(target)).position;
     pause(kFramePeriod);

@@ -114,8 +114,8 @@ TEST(BoardVerdicts, AnswersThatEndWronglyAreTheFindingAndNoSilence) {
   EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
 }
 
-/// The suite's go-to cases on an emulated board in memory that is guarded like a real one.
-Report run_guarded(const std::string& emulated) {
+/// Some of the suite's cases on an emulated board in memory that is guarded like a real one.
+Report run_guarded(const std::string& emulated, const std::string& filter) {
   static std::string target;
   target = emulated;
   auto wiring = test::wiring<cli::OnStream>("parol6");
@@ -126,13 +126,13 @@ Report run_guarded(const std::string& emulated) {
   how.permissions = Permissions::all();
   const auto bench = make_bench(*Rig<StreamPort>::open(wiring, how), how);
   RunOptions options;
-  options.selection.filter = "parol6.goto.";
+  options.selection.filter = filter;
   options.permissions = how.permissions;
   return run_suite(suite(), **bench, options, [](const ReportRow&) {});
 }
 
 TEST(BoardVerdicts, AGoToThatKeepsSixteenBitsIsAFailureOfTheCaseAndNotTheGuards) {
-  const auto report = run_guarded("emulated:?fault=quirk:goal-16-bit");
+  const auto report = run_guarded("emulated:?fault=quirk:goal-16-bit", "parol6.goto.arrives");
   const auto* arrives = row(report, "parol6.goto.arrives");
   ASSERT_TRUE(arrives);
   EXPECT_EQ(arrives->verdict, Verdict::kFail) << to_text(*arrives);
@@ -140,8 +140,24 @@ TEST(BoardVerdicts, AGoToThatKeepsSixteenBitsIsAFailureOfTheCaseAndNotTheGuards)
   EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
 }
 
+TEST(BoardVerdicts, AGoToThatKeepsSixteenBitsIsFoundWhicheverCaseIsFirst) {
+  const auto report = run_guarded("emulated:?fault=quirk:goal-16-bit", "parol6.goto.");
+  const auto* stops = row(report, "parol6.goto.stops");
+  ASSERT_TRUE(stops);
+  EXPECT_EQ(stops->verdict, Verdict::kFail) << to_text(*stops);
+  EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
+}
+
+TEST(BoardVerdicts, AnArmThatStraysOnItsWayToTheStartIsTheDevicesDoing) {
+  const auto report = run_guarded("emulated:?fault=quirk:goal-16-bit", "parol6.goto.s");
+  const auto* start = row(report, "parol6.start");
+  ASSERT_TRUE(start);
+  EXPECT_EQ(start->verdict, Verdict::kFail) << to_text(*start);
+  EXPECT_THAT(start->actual, HasSubstr("the guard stopped it: j3"));
+}
+
 TEST(BoardVerdicts, ASoundBoardIsNotStoppedByTheGuardInAGoTo) {
-  const auto report = run_guarded("emulated:");
+  const auto report = run_guarded("emulated:", "parol6.goto.");
   for (const auto& each : report.rows) EXPECT_NE(each.verdict, Verdict::kFail) << to_text(each);
 }
 
