@@ -227,7 +227,7 @@ Exit run(const Device& device, const Suite& suite, ConformanceOptions options) {
   how->must_stop = must_stop;
   how->when_left = WhenLeft::kSayNothing;  // cases look at what an arm does without its client
   options.run.must_stop = must_stop;
-  auto shadow = LiveShadow::open(device, options.shadow, !how->target.is_emulated());
+  auto shadow = LiveShadow::open(device, how->target, options.shadow);
   if (!shadow) return report(shadow.error());
   if (*shadow) {
     how->capture.listener = [&shadow](const CaptureRecord& record) {

@@ -85,8 +85,6 @@ struct OnBus : OnPort<BusPort, HostedBus> {};
 struct FuzzEntry {
   /// Makes lengths and checksums of a message right again, where sessions drawn at random do not.
   void (*seal)(std::span<std::byte> message){};
-  /// In what a live device may differ from its model: rules as of `armjig replay --rules`.
-  std::string_view live_rules{};
   /// The machines that `--learn` learns; empty: none.
   std::span<const campaign::Learnable> machines{};
 };
@@ -109,6 +107,9 @@ struct Device {
   std::optional<ProgramCheckEntry> program_check{};  ///< none: nothing is demanded of programs
   Replay replay{};                                   ///< how recordings drive it
   DrawSession draw_session{};                        ///< none: nothing is drawn at random
+  /// In what a live device may differ from the emulated one: rules as of `armjig replay --rules`.
+  /// Empty: in times by 100 ms, and in the order.
+  std::string_view live_rules{};
   FuzzEntry fuzz{};
   Dissection (*dissection)(){};  ///< none: Wireshark is told nothing
   /// What of the emulated device can be told from a recording of a board; none: nothing.

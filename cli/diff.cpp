@@ -231,6 +231,15 @@ Outcome<ComparisonRules> rules_of(const std::string& path) {
   return path.empty() ? Outcome<ComparisonRules>{ComparisonRules{}} : ComparisonRules::read(path);
 }
 
+Outcome<ComparisonRules> rules_beside(const Device& device, const Target& target,
+                                      const std::string& path) {
+  constexpr std::string_view kAnyDevice = "time_ms = 100\norder = \"free\"\n";
+  if (!path.empty() || target.is_emulated()) return rules_of(path);
+  const auto own = device.live_rules;
+  return ComparisonRules::parse(own.empty() ? kAnyDevice : own,
+                                fmt::format("the rules of {}", device.name));
+}
+
 namespace {
 
 Exit compare(Devices devices, const DiffOptions& options) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/device.hpp"
 #include "cli/outputs.hpp"
 #include "harness/compare/recording_diff.hpp"
 #include "harness/compare/rules.hpp"
@@ -48,5 +49,11 @@ struct Compared {
 
 /// What may differ; nothing if there is no file. Problems: those of `ComparisonRules::read`.
 [[nodiscard]] Outcome<ComparisonRules> rules_of(const std::string& path);
+
+/// What may differ between a target and an emulated device that is led beside it: what the file
+/// says; without one nothing if the target is emulated, else what the entry says of live devices.
+/// Problems: as above.
+[[nodiscard]] Outcome<ComparisonRules> rules_beside(const Device& device, const Target& target,
+                                                    const std::string& path);
 
 }  // namespace armjig::cli

@@ -151,12 +151,6 @@ Outcome<FuzzRun> read_run(const Device& device, const FuzzOptions& options) {
   return FuzzRun{device, *std::move(how), options, *std::move(known), std::move(model_rig), facts};
 }
 
-Outcome<ComparisonRules> rules_of(const FuzzRun& run) {
-  if (!run.options.rules.empty()) return ComparisonRules::read(run.options.rules);
-  if (run.how.target.is_emulated()) return ComparisonRules{};
-  return live_rules_of(run.device);
-}
-
 /// What is done at a finding to see it again.
 std::string repeat_of(const FuzzRun& run, const std::optional<Folder>& folder,
                       const campaign::Finding& finding) {
@@ -256,7 +250,7 @@ CampaignOptions campaign_options(const FuzzRun& run, const CampaignState& state,
 Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, CampaignState state) {
   const auto files = ReportOutputs::open(run.options.files);
   if (!files) return report(files.error());
-  auto rules = rules_of(run);
+  auto rules = rules_beside(run.device, run.how.target, run.options.rules);
   if (!rules) return report(rules.error());
   const Signals signals;
   const auto begun = std::chrono::steady_clock::now();

@@ -209,13 +209,6 @@ std::unique_ptr<campaign::Stage> stage_alone(const Device& device, const RigOpti
   });
 }
 
-Outcome<ComparisonRules> live_rules_of(const Device& device) {
-  constexpr std::string_view kAnyDevice = "time_ms = 100\norder = \"free\"\n";
-  const auto own = device.fuzz.live_rules;
-  return ComparisonRules::parse(own.empty() ? kAnyDevice : own,
-                                fmt::format("the rules of {}", device.name));
-}
-
 std::string port_name_of(const Device& device) {
   constexpr std::array kNames{"OnStream", "OnServer", "OnBus"};
   return kNames.at(device.port.index());

@@ -10,7 +10,6 @@
 #include "emulators/campaign/author.hpp"
 #include "emulators/campaign/folder.hpp"
 #include "emulators/campaign/stage.hpp"
-#include "harness/compare/rules.hpp"
 
 namespace armjig::cli {
 
@@ -29,10 +28,6 @@ namespace armjig::cli {
 [[nodiscard]] std::unique_ptr<campaign::Stage> stage_alone(const Device& device,
                                                            const RigOptions& how, const Hand& hand,
                                                            double speed);
-
-/// In what a device that is not emulated may differ from its model. Problems: as for
-/// `ComparisonRules::parse`.
-[[nodiscard]] Outcome<ComparisonRules> live_rules_of(const Device& device);
 
 /// `OnStream`, `OnServer` or `OnBus`.
 [[nodiscard]] std::string port_name_of(const Device& device);

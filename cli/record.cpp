@@ -103,7 +103,7 @@ Exit record(Devices devices, const RecordOptions& options) {
   if (!files) return report(files.error());
   const auto file = open_capture_file("--out", options.capture);
   if (!file) return report(file.error());
-  auto shadow = LiveShadow::open(device, options.shadow, !target->is_emulated());
+  auto shadow = LiveShadow::open(device, *target, options.shadow);
   if (!shadow) return report(shadow.error());
   RelayStatistics statistics;
   std::optional<HostedCapture> capture;

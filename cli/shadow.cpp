@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -35,6 +36,12 @@ constexpr auto kFitHelp =
     "\n"
     "Exit codes: 0 figures were told, 2 usage or no recording of a device, 4 none could be told.";
 
+/// What differs so soon was so before.
+constexpr Duration kBeginning = std::chrono::milliseconds{100};
+constexpr auto kFromTheBeginning =
+    "so it is from the beginning: was the board switched on before that, or has it what an option "
+    "names (armjig emulate DEVICE --help)?";
+
 struct FitOptions {
   std::string file;
   std::string rules;
@@ -46,7 +53,25 @@ struct FitOptions {
 struct Distance {
   std::size_t differences{};
   std::size_t messages{};
+  std::string first;             ///< what differs first, one line
+  bool is_from_the_beginning{};  ///< the device has said nothing for long before it
+
+  [[nodiscard]] static Distance of(const TalkReplay& replay, const ComparisonRules& rules);
 };
+
+Distance Distance::of(const TalkReplay& replay, const ComparisonRules& rules) {
+  const auto found = diff(replay.recorded, replay.emulated, rules);
+  Distance distance{.differences = found.size(), .messages = replay.recorded.count()};
+  if (found.empty()) return distance;
+  const auto& first = found.front();
+  const auto& message = (first.before != nullptr ? first.before : first.after)->message;
+  distance.first = fmt::format("{:.6f} s, {}, '{}' {}: {}", seconds(first.time()), first.lane,
+                               message.name.empty() ? "bytes" : message.name,
+                               to_string(first.change), fmt::join(first.what, "; "));
+  distance.is_from_the_beginning =
+      first.time() <= replay.recorded.lanes().at(first.lane).front().message.time + kBeginning;
+  return distance;
+}
 
 std::string to_target(const DeviceOptions& options) {
   std::string text = "emulated:";
@@ -73,10 +98,8 @@ class Fitting {
   }
 
   [[nodiscard]] Outcome<Distance> distance(const DeviceOptions& options) const {
-    return play(options).map([this](const TalkReplay& replay) {
-      return Distance{diff(replay.recorded, replay.emulated, rules_).size(),
-                      replay.recorded.count()};
-    });
+    return play(options).map(
+        [this](const TalkReplay& replay) { return Distance::of(replay, rules_); });
   }
 
  private:
@@ -149,6 +172,9 @@ void print_text(const Fit& found, const Distance& before, const Distance& after)
   fmt::print("{}\n", to_target(found.options));
   fmt::print("differences in {} messages: {}, with the usual options {}\n", after.messages,
              after.differences, before.differences);
+  if (after.differences == 0) return;
+  fmt::print("the first: {}\n", wording::line(after.first));
+  if (after.is_from_the_beginning) fmt::print("{}\n", kFromTheBeginning);
 }
 
 void print_json(const Fit& found, const Distance& before, const Distance& after) {
@@ -158,6 +184,10 @@ void print_json(const Fit& found, const Distance& before, const Distance& after)
             {"differences", after.differences},
             {"differences_before", before.differences},
             {"figures", Json::array()}};
+  if (after.differences > 0) {
+    json["first_difference"] = after.first;
+    json["differs_from_the_beginning"] = after.is_from_the_beginning;
+  }
   for (const auto& one : found.figures) json["figures"].push_back(json_of(one));
   fmt::print("{}\n", json.dump());
 }

@@ -15,8 +15,6 @@ namespace {
 
 /// Of what goes on being different nobody reads more.
 constexpr std::size_t kMostTold = 3;
-/// A link and two programs may take so long.
-constexpr Duration kNoiseOfLinks = std::chrono::milliseconds{100};
 
 }  // namespace
 
@@ -31,8 +29,8 @@ void add_shadow_options(CLI::App& command, ShadowOptions& options) {
       ->needs(shadow);
 }
 
-Outcome<std::unique_ptr<LiveShadow>> LiveShadow::open(const Device& device,
-                                                      const ShadowOptions& options, bool is_real) {
+Outcome<std::unique_ptr<LiveShadow>> LiveShadow::open(const Device& device, const Target& beside,
+                                                      const ShadowOptions& options) {
   if (options.target.empty()) return nullptr;
   const auto target = parse_target(options.target);
   if (!target) return tl::unexpected{target.error()};
@@ -40,9 +38,8 @@ Outcome<std::unique_ptr<LiveShadow>> LiveShadow::open(const Device& device,
     return problem(ErrorCode::kBadTarget, "--shadow " + options.target,
                    "the one beside it is emulated: write emulated: or emulated:?OPTIONS");
   }
-  auto rules = rules_of(options.rules);
+  auto rules = rules_beside(device, beside, options.rules);
   if (!rules) return tl::unexpected{rules.error()};
-  if (options.rules.empty() && is_real) rules->time_tolerance = kNoiseOfLinks;
   return std::visit(
       [&](const auto& kind) -> Outcome<std::unique_ptr<LiveShadow>> {
         auto twin = cli::emulate(kind, target->options, target->text);

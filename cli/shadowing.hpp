@@ -23,11 +23,11 @@ void add_shadow_options(CLI::App& command, ShadowOptions& options);
 /// An emulated device beside another one, and what is said of it on standard error.
 class LiveShadow {
  public:
-  /// nullptr if nobody asked. `is_real`: times of the device have the noise of links. Problems:
-  /// `kBadTarget` for one that is not emulated, those of making it, and of the rules.
+  /// nullptr if nobody asked. `beside` is the target that it is led beside. Problems: `kBadTarget`
+  /// for one that is not emulated, those of making it, and of the rules.
   [[nodiscard]] static Outcome<std::unique_ptr<LiveShadow>> open(const Device& device,
-                                                                 const ShadowOptions& options,
-                                                                 bool is_real);
+                                                                 const Target& beside,
+                                                                 const ShadowOptions& options);
 
   /// Has to overhear the device, and to outlive it.
   [[nodiscard]] Overhearer& overhearer() noexcept { return *shadow_; }

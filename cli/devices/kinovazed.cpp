@@ -48,7 +48,8 @@ cli::Device device() {
                      .touches_of = replay::touches_of,
                      .verify_table = replay::verify_matrix},
           .draw_session = sessions::draw,
-          .fuzz = {.live_rules = kLiveRules, .machines = machines()},
+          .live_rules = kLiveRules,
+          .fuzz = {.machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures};
 }

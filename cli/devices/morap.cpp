@@ -53,7 +53,8 @@ cli::Device device() {
                      .write = replay::write,
                      .touches_of = replay::touches_of},
           .draw_session = sessions::draw,
-          .fuzz = {.live_rules = kLiveRules, .machines = machines()},
+          .live_rules = kLiveRules,
+          .fuzz = {.machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures,
           .commands = {cli::add_i2c, cli::add_morap}};

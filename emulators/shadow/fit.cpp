@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 namespace armjig {
@@ -146,19 +147,29 @@ Outcome<FigureAnswer> choose_word(const FitTalk& talk, const DeviceOptions& so_f
   return answer;
 }
 
-void for_each_pair(const TalkReplay& replay,
-                   const std::function<void(const RecordedMessage& recorded,
-                                            const RecordedMessage& emulated)>& use) {
-  for (const auto& [lane, recorded] : replay.recorded.lanes()) {
+std::size_t for_each_pair(const TalkReplay& replay,
+                          const std::function<void(const RecordedMessage& recorded,
+                                                   const RecordedMessage& emulated)>& use,
+                          std::string_view passed_over) {
+  const auto counts = [&](const RecordedMessage& one) {
+    return one.message.direction == Direction::kFromDevice && one.message.name != passed_over;
+  };
+  std::size_t unpaired = 0;
+  for (const auto& [lane, messages] : replay.recorded.lanes()) {
+    auto recorded = std::views::filter(messages, counts);
     const auto found = replay.emulated.lanes().find(lane);
-    if (found == replay.emulated.lanes().end()) continue;
-    const auto& emulated = found->second;
-    for (std::size_t i = 0; i < std::min(recorded.size(), emulated.size()); ++i) {
-      if (recorded[i].message.direction != Direction::kFromDevice) break;
-      if (recorded[i].message.name != emulated[i].message.name) break;
-      use(recorded[i], emulated[i]);
+    static const std::vector<RecordedMessage> kNone;
+    auto emulated =
+        std::views::filter(found == replay.emulated.lanes().end() ? kNone : found->second, counts);
+    auto one = recorded.begin();
+    auto other = emulated.begin();
+    for (; one != recorded.end() && other != emulated.end(); ++one, ++other) {
+      if (one->message.name != other->message.name) break;
+      use(*one, *other);
     }
+    unpaired += static_cast<std::size_t>(std::ranges::distance(one, recorded.end()));
   }
+  return unpaired;
 }
 
 }  // namespace armjig

@@ -114,9 +114,11 @@ struct ValleySearch {
                                                 Duration tolerance);
 
 /// Calls `use(recorded, emulated)` for the messages of the device in each lane, the first with the
-/// first and so on, as long as they are of one kind.
-void for_each_pair(const TalkReplay& replay,
-                   const std::function<void(const RecordedMessage& recorded,
-                                            const RecordedMessage& emulated)>& use);
+/// first and so on, as long as they are of one kind; those named `passed_over` are not there. How
+/// many recorded ones had no partner.
+std::size_t for_each_pair(const TalkReplay& replay,
+                          const std::function<void(const RecordedMessage& recorded,
+                                                   const RecordedMessage& emulated)>& use,
+                          std::string_view passed_over = {});
 
 }  // namespace armjig

@@ -79,6 +79,7 @@ Shadow::Shadow(AnyHosted twin, MakeDissector make_dissector, ComparisonRules rul
 
 void Shadow::to_device(Instant time, Bytes bytes) {
   lead_to(time);
+  catch_up();
   hear_host(time, 0, bytes);
   if (auto* const stream = std::get_if<std::unique_ptr<HostedStream>>(&twin_)) {
     (*stream)->receive(now_, bytes);
@@ -110,6 +111,7 @@ void Shadow::on_connection(const ConnectionEvent& event) {
     lane_of(id).device.said.push_back(end_message(event.time));
     ++counts_.messages;
   } else if (const auto found = connections_.find(id); found != connections_.end()) {
+    catch_up();
     if (event.kind == Kind::kToServer) {
       hear_host(event.time, id, event.bytes);
       server.receive(now_, found->second, event.bytes);
@@ -192,6 +194,7 @@ void Shadow::hear(Side& side, Instant time, Direction direction, Bytes bytes,
   if (messages.empty() && !note.empty()) {  // nobody answered
     messages.push_back({.direction = direction, .time = time, .name = "transaction"});
   }
+  std::erase_if(messages, [this](const Message& one) { return rules_.ignores(one.name); });
   for (auto& message : messages) side.said.push_back({std::move(message), note, {}});
   for (auto& [id, lane] : lanes_) {
     if (&lane.device == &side) counts_.messages += messages.size();
@@ -206,6 +209,28 @@ void Shadow::lead_to(Instant time) {
         take_sent(*device);
       },
       twin_);
+}
+
+void Shadow::catch_up() {
+  while (const auto latest = owes_until()) {
+    const auto next = std::visit([](const auto& device) { return device->next_event(); }, twin_);
+    if (!next || *next > *latest) return;
+    lead_to(*next);
+    for (auto& [id, lane] : lanes_) match(lane, now_);
+  }
+}
+
+/// How long the twin may take to say what the device has said.
+std::optional<Instant> Shadow::owes_until() const {
+  for (const auto& [id, lane] : lanes_) {
+    for (const auto& one : lane.device.said) {
+      const auto is_said = std::ranges::any_of(lane.twin.said, [&](const RecordedMessage& other) {
+        return other.message.name == one.message.name;
+      });
+      if (!is_said) return one.message.time + rules_.time_tolerance;
+    }
+  }
+  return std::nullopt;
 }
 
 template <class Device>
@@ -246,12 +271,6 @@ bool Shadow::match_first(Lane& lane, Instant now) {
   auto& said = lane.device.said;
   auto& twin = lane.twin.said;
   const auto& one = said.front();
-  if (rules_.ignores(one.message.name)) {
-    said.pop_front();
-    return true;
-  }
-  std::erase_if(twin,
-                [&](const RecordedMessage& other) { return rules_.ignores(other.message.name); });
   const auto equal = std::ranges::find_if(twin, [&](const RecordedMessage& other) {
     return likeness.is_in_time(one, other) && likeness.has_same_content(one, other);
   });
@@ -262,7 +281,7 @@ bool Shadow::match_first(Lane& lane, Instant now) {
         twin.pop_front();
       }
     }
-    twin.erase(rules_.is_order_free ? equal : twin.begin());
+    take_pair(lane, rules_.is_order_free ? equal : twin.begin());
     agree(lane, one.message.time);
     said.pop_front();
     return true;
@@ -273,11 +292,38 @@ bool Shadow::match_first(Lane& lane, Instant now) {
   if (like == twin.end()) {
     tell(lane, Change::kExtra, &one, nullptr);
   } else {
-    tell(lane, Change::kChanged, &one, &*like, likeness.differences(one, *like));
-    twin.erase(like);
+    if (likeness.is_in_time(one, *like) && is_on_its_way(lane, one)) {
+      agree(lane, one.message.time);
+    } else {
+      tell(lane, Change::kChanged, &one, &*like, likeness.differences(one, *like));
+    }
+    take_pair(lane, like);
   }
   said.pop_front();
   return true;
+}
+
+/// Whether the twin comes past what is said there, before or after, within the tolerance.
+bool Shadow::is_on_its_way(const Lane& lane, const RecordedMessage& one) const {
+  const Likeness likeness{rules_};
+  std::vector<const RecordedMessage*> near;
+  for (const auto* const some : {&lane.paired, &lane.twin.said}) {
+    for (const auto& other : *some) {
+      if (other.message.name == one.message.name && likeness.is_in_time(one, other)) {
+        near.push_back(&other);
+      }
+    }
+  }
+  return likeness.is_among(one, near);
+}
+
+void Shadow::take_pair(Lane& lane, std::deque<RecordedMessage>::iterator twin) {
+  while (!lane.paired.empty() &&
+         lane.paired.front().message.time + 2 * rules_.time_tolerance < twin->message.time) {
+    lane.paired.pop_front();
+  }
+  lane.paired.push_back(std::move(*twin));
+  lane.twin.said.erase(twin);
 }
 
 void Shadow::agree(Lane& lane, Instant time) {

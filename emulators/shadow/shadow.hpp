@@ -32,14 +32,16 @@ struct Divergence {
 [[nodiscard]] std::string describe(const Divergence& divergence);
 
 struct ShadowCounts {
-  std::size_t messages{};  ///< of the device
+  std::size_t messages{};  ///< of the device, but for those that the rules ignore
   std::size_t divergences{};
   std::size_t agreements{};  ///< how often they agreed again after that
 };
 
 /// Leads an emulated device by what it overhears of another one. Messages of both are paired in
 /// each lane: with an equal one within the tolerance of time, before which those of the twin are
-/// missing; else with the next of the same name, which is changed.
+/// missing; else with the next of the same name, which is changed, unless each field says what the
+/// twin says at some time within that tolerance. A host acts on what the device said, so before the
+/// twin hears it, the twin goes on until it has said that, too, if that is within the tolerance.
 class Shadow final : public Overhearer {
  public:
   struct Listener {
@@ -72,17 +74,22 @@ class Shadow final : public Overhearer {
     std::string name;
     Side device;
     Side twin;
-    std::size_t apart = 0;  ///< divergences since they agreed last
+    std::deque<RecordedMessage> paired;  ///< of the twin, lately
+    std::size_t apart = 0;               ///< divergences since they agreed last
   };
 
   Lane& lane_of(std::uint32_t id);
   void hear_host(Instant time, std::uint32_t id, Bytes bytes);
   void hear(Side& side, Instant time, Direction direction, Bytes bytes, const std::string& note);
   void lead_to(Instant time);
+  void catch_up();
+  [[nodiscard]] std::optional<Instant> owes_until() const;
   template <class Device>
   void take_sent(Device& device);
   void match(Lane& lane, Instant now);
   bool match_first(Lane& lane, Instant now);
+  [[nodiscard]] bool is_on_its_way(const Lane& lane, const RecordedMessage& one) const;
+  void take_pair(Lane& lane, std::deque<RecordedMessage>::iterator twin);
   void agree(Lane& lane, Instant time);
   void tell(Lane& lane, Change change, const RecordedMessage* device, const RecordedMessage* twin,
             std::vector<std::string> what = {});

@@ -72,6 +72,27 @@ bool Likeness::has_same_content(const RecordedMessage& a, const RecordedMessage&
          });
 }
 
+bool Likeness::is_among(const RecordedMessage& one,
+                        std::span<const RecordedMessage* const> others) const {
+  const auto is_comparable = [&](const RecordedMessage* other) {
+    return one.note == other->note && one.rest == other->rest &&
+           are_alike(one.message, other->message) && is_only_in_fields(one.message, other->message);
+  };
+  if (others.empty() || !std::ranges::all_of(others, is_comparable)) return false;
+  return std::ranges::all_of(one.message.fields, [&](const Field& field) {
+    const auto value = field_value(field, one.message.raw);
+    bool is_reached = false;
+    bool is_exceeded = false;
+    for (const auto* const other : others) {
+      const auto its = field_value(field, other->message.raw);
+      if (rules_.allows(one.message.name, field, value, its)) return true;
+      const auto is_less = number_of(field, its) < number_of(field, value);
+      (is_less ? is_reached : is_exceeded) = true;
+    }
+    return !is_state(field) && is_reached && is_exceeded;
+  });
+}
+
 std::vector<std::string> Likeness::differences(const RecordedMessage& a,
                                                const RecordedMessage& b) const {
   std::vector<std::string> what;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,10 @@ class Likeness {
     return !first_apart(one, other);
   }
   [[nodiscard]] bool has_same_content(const RecordedMessage& a, const RecordedMessage& b) const;
+  /// Whether it says what others of its name say, between whose times it belongs: each state as one
+  /// of them, each number between their least and their most. They are in time.
+  [[nodiscard]] bool is_among(const RecordedMessage& one,
+                              std::span<const RecordedMessage* const> others) const;
   /// What differs beyond the rules: time, note, rest, fields or bytes, `NAME: ONE, OTHER`.
   [[nodiscard]] std::vector<std::string> differences(const RecordedMessage& a,
                                                      const RecordedMessage& b) const;

@@ -340,7 +340,7 @@ Outcome<HostedReplay> replay_once(std::string_view name, const std::string& file
   if (!trace) return tl::unexpected{trace.error()};
   const auto talk = read_talk(file);
   if (!talk) return tl::unexpected{talk.error()};
-  auto rules = ComparisonRules::parse(device.fuzz.live_rules, "live rules");
+  auto rules = ComparisonRules::parse(device.live_rules, "live rules");
   if (!rules) return tl::unexpected{rules.error()};
   rules->time_tolerance = kTimes;
   rules->ignored_messages.emplace_back("events");

@@ -99,6 +99,53 @@ TEST(Shadow, AgreesAgainAfterAMessageOfTheTwinAlone) {
   EXPECT_EQ(told.shadow.counts().divergences, 2U);
 }
 
+/// What is told of a server whose calls to its arm take less time than the twin's, under a host
+/// that sends its next line as soon as it is told of the end of the one before.
+std::vector<std::string> told_of_a_quick_host(Duration tolerance) {
+  ToldOfBoth told{made<cli::OnServer>("kinovazed", {{"call-us", "4000"}}),
+                  kinovazed::make_dissector,
+                  {.time_tolerance = tolerance, .ignored_messages = {"Heartbeat"}}};
+  const auto server =
+      open_in_memory(overhear(made<cli::OnServer>("kinovazed", {{"call-us", "100"}}), told.shadow));
+  const auto port = server->make_port();
+  EXPECT_TRUE(port->connect(port->now() + 1s));
+  struct Exchange {
+    std::string_view line;
+    std::string_view end;
+  };
+  for (const auto& [line, end] :
+       {Exchange{"QuitEStop\r\n", "Accepted"}, Exchange{"Initialize\r\n", "Initialized"},
+        Exchange{"Freeze\r\n", "Freezed"}, Exchange{"Unfreeze\r\n", "Unfreezed"}}) {
+    EXPECT_TRUE(port->send(std::as_bytes(std::span{line})));
+    std::string heard;
+    const auto latest = port->now() + 30s;
+    while (heard.find(end) == std::string::npos && port->now() < latest) {
+      std::array<std::byte, 256> buffer;
+      const auto size = port->receive(buffer, latest).value().size;
+      heard.append(reinterpret_cast<const char*>(buffer.data()), size);
+    }
+    EXPECT_THAT(heard, HasSubstr(end)) << line;
+  }
+  told.shadow.finish();
+  return told.lines;
+}
+
+TEST(Shadow, LetsTheTwinSayFirstWhatTheHostActsOn) {
+  EXPECT_THAT(told_of_a_quick_host(100ms), IsEmpty());
+  EXPECT_THAT(told_of_a_quick_host(1ms), testing::Not(IsEmpty())) << "that is too late";
+}
+
+TEST(Shadow, DoesNotMissWhatTheRulesIgnore) {
+  ToldOfBoth told{made<cli::OnServer>("kinovazed"),
+                  kinovazed::make_dissector,
+                  {.ignored_messages = {"Heartbeat"}}};
+  told.shadow.on_connection({.time = at(1s), .kind = ConnectionEvent::Kind::kBegun});
+  told.shadow.wait_until(at(5s));  // the twin beats each second, and the device never does
+  told.shadow.finish();
+  EXPECT_THAT(told.lines, IsEmpty());
+  EXPECT_EQ(told.shadow.counts().messages, 0U) << "nothing was judged";
+}
+
 TEST(Shadow, FollowsConnectionsOfAServer) {
   for (const bool is_faulty : {false, true}) {
     ToldOfBoth told{made<cli::OnServer>("kinovazed"), kinovazed::make_dissector};

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/compare/likeness.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "harness/wire/parol6/dissector.hpp"
+#include "harness/wire/parol6/frame.hpp"
+
+namespace armjig {
+namespace {
+
+using namespace std::chrono_literals;
+
+RecordedMessage telemetry(std::int32_t position, std::uint8_t homed) {
+  parol6::TelemetryFrame frame{.homed = homed};
+  frame.position[0] = Steps{position};
+  std::vector<Message> found;
+  parol6::make_dissector()->feed(Direction::kFromDevice, at(1s), parol6::encode(frame), found);
+  return {.message = found.at(0), .note = {}};
+}
+
+class LikenessAmongTwo : public testing::Test {
+ protected:
+  [[nodiscard]] bool is_among(const RecordedMessage& one) const {
+    const std::vector<const RecordedMessage*> others{&before, &after};
+    return Likeness{rules}.is_among(one, others);
+  }
+
+  ComparisonRules rules;
+  RecordedMessage before = telemetry(100, 0x03);
+  RecordedMessage after = telemetry(200, 0x43);
+};
+
+TEST_F(LikenessAmongTwo, ANumberLiesBetweenThem) {
+  for (const auto position : {100, 101, 150, 200}) EXPECT_TRUE(is_among(telemetry(position, 0x03)));
+  for (const auto position : {-150, 99, 201}) EXPECT_FALSE(is_among(telemetry(position, 0x03)));
+}
+
+TEST_F(LikenessAmongTwo, AStateIsThatOfOneOfThem) {
+  EXPECT_TRUE(is_among(telemetry(150, 0x43)));
+  EXPECT_FALSE(is_among(telemetry(150, 0x23))) << "between 0x03 and 0x43, and what neither says";
+}
+
+TEST_F(LikenessAmongTwo, AToleranceHoldsForEachOfThem) {
+  rules.fields.push_back({.message = {}, .name = "position.j1", .tolerance = 5});
+  EXPECT_TRUE(is_among(telemetry(205, 0x03)));
+  EXPECT_FALSE(is_among(telemetry(206, 0x03)));
+}
+
+TEST_F(LikenessAmongTwo, NothingIsAmongOthersOfAnotherNameOrNone) {
+  EXPECT_FALSE((Likeness{rules}.is_among(before, {})));
+  after.message.name = "other";
+  EXPECT_FALSE(is_among(telemetry(150, 0x03)));
+}
+
+}  // namespace
+}  // namespace armjig
