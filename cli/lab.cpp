@@ -223,12 +223,11 @@ Exit exec(Devices devices, ExecOptions options) {
   if (is_bus && !options.lab.empty()) {  // it was the first word of the program
     options.program.insert(options.program.begin(), std::exchange(options.lab, {}));
   }
-  if (!is_bus && options.lab.empty()) {
-    return report({ErrorCode::kBadValue, "LAB.toml is missing",
-                   "name a TOML file with devices, or with --i2c one of a bus"});
-  }
   if (options.program.empty()) {
-    return report({ErrorCode::kBadValue, "PROGRAM is missing", "write it behind --"});
+    return report(is_bus ? Problem{ErrorCode::kBadValue, "PROGRAM is missing", "write it behind --"}
+                         : Problem{ErrorCode::kBadValue, "LAB.toml or PROGRAM is missing",
+                                   "write armjig lab exec LAB.toml -- PROGRAM, or --i2c NODES.toml "
+                                   "for a bus alone"});
   }
   auto plans = is_bus ? lab_of_bus(devices, options) : read_lab(options.lab, devices);
   if (!plans) return report(plans.error());

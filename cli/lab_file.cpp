@@ -109,6 +109,10 @@ class LabReader {
       table.complain("speed", "the time of a device that is not emulated is its own");
     }
     if (const auto text = table.text("impair")) {
+      if (!device.target.is_emulated()) {
+        table.complain("impair", "a flipped bit could make a device move that is not emulated, and "
+                                 "here is no guard");
+      }
       auto impairment = parse_impairment(*text);
       if (!impairment) return table.complain("impair", describe(impairment.error()));
       device.impairment = *impairment;
