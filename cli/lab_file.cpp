@@ -110,8 +110,9 @@ class LabReader {
     }
     if (const auto text = table.text("impair")) {
       if (!device.target.is_emulated()) {
-        table.complain("impair", "a flipped bit could make a device move that is not emulated, and "
-                                 "here is no guard");
+        table.complain("impair",
+                       "a flipped bit could make a device move that is not emulated, and "
+                       "here is no guard");
       }
       auto impairment = parse_impairment(*text);
       if (!impairment) return table.complain("impair", describe(impairment.error()));
@@ -125,8 +126,7 @@ class LabReader {
     device.capture.is_redacted = table.boolean("redact").value_or(false);
     claim(table, "capture", device.capture.file, device);
     for (const auto key : {"rotate", "redact"}) {
-      const bool is_said = !device.capture.rotate.empty() || device.capture.is_redacted;
-      if (device.capture.file.empty() && is_said) {
+      if (device.capture.file.empty() && table.has(key)) {
         table.complain(key, "nothing is recorded: say capture = \"FILE\"");
       }
     }

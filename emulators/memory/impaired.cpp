@@ -49,16 +49,13 @@ class BehindLinks : public hosted_by::SenderAround<HostedType> {
     return hosted_by::do_then([&] { return work(time); }, [this] { settle(); });
   }
   [[nodiscard]] std::optional<Instant> next_on_links() const {
-    return first_of(next_at_device(), links_.next_due_in(reached_));
+    return first_of(this->device().next_event(), links_.next_due(reached_));
   }
 
  private:
-  [[nodiscard]] std::optional<Instant> next_at_device() const {
-    return first_of(this->device().next_event(), links_.next_due_out(reached_));
-  }
   /// From one arrival or event to the next, because each answer begins its way when it is sent.
   void carry_to(Instant time) {
-    for (auto next = next_at_device(); next && *next <= time; next = next_at_device()) {
+    for (auto next = next_on_links(); next && *next <= time; next = next_on_links()) {
       lead_to(*next);
     }
     lead_to(time);
@@ -85,11 +82,8 @@ class StreamWays {
 
   void push_out(Instant time, Bytes bytes) { paths_.out.push(time, bytes); }
   [[nodiscard]] std::size_t too_much() const noexcept { return too_much_on(paths_.out); }
-  [[nodiscard]] std::optional<Instant> next_due_out(Instant now) const noexcept {
-    return paths_.out.next_due(now);
-  }
-  [[nodiscard]] std::optional<Instant> next_due_in(Instant now) const noexcept {
-    return paths_.in.next_due(now);
+  [[nodiscard]] std::optional<Instant> next_due(Instant now) const noexcept {
+    return first_of(paths_.out.next_due(now), paths_.in.next_due(now));
   }
   void deliver_out(Instant now, HostedStream& device) {
     while (const auto delivery = paths_.out.pop(now)) device.receive(now, delivery->bytes);
@@ -148,14 +142,11 @@ class ServerWays {
     return found == ways_.end() ? 0 : too_much_on(found->second.paths.out);
   }
 
-  [[nodiscard]] std::optional<Instant> next_due_out(Instant now) const noexcept {
+  [[nodiscard]] std::optional<Instant> next_due(Instant now) const noexcept {
     std::optional<Instant> next;
-    for (const auto& [id, way] : ways_) next = first_of(next, way.paths.out.next_due(now));
-    return next;
-  }
-  [[nodiscard]] std::optional<Instant> next_due_in(Instant now) const noexcept {
-    std::optional<Instant> next;
-    for (const auto& [id, way] : ways_) next = first_of(next, way.paths.in.next_due(now));
+    for (const auto& [id, way] : ways_) {
+      next = first_of(next, first_of(way.paths.out.next_due(now), way.paths.in.next_due(now)));
+    }
     return next;
   }
   void deliver_out(Instant now, HostedServer& server) {
@@ -175,23 +166,26 @@ class ServerWays {
   }
   void deliver_in(Instant now, HostedServer& server, std::vector<ServerEvent>& sent_now) {
     const auto before = static_cast<std::ptrdiff_t>(sent_now.size());
+    const auto add = [&](ServerEvent event) {
+      const auto place = std::ranges::upper_bound(sent_now.begin() + before, sent_now.end(),
+                                                  event.time, {}, &ServerEvent::time);
+      sent_now.insert(place, std::move(event));
+    };
     std::vector<ConnectionId> over;
     for (auto& [id, way] : ways_) {
       while (auto delivery = way.paths.in.pop(now)) {
-        sent_now.push_back(
-            {delivery->due, id, SessionEvent::Kind::kData, std::move(delivery->bytes)});
+        add({delivery->due, id, SessionEvent::Kind::kData, std::move(delivery->bytes)});
       }
       if (way.paths.is_broken(now)) {
         server.reset(now, id);
-        sent_now.push_back({now, id, SessionEvent::Kind::kReset, {}});
+        add({now, id, SessionEvent::Kind::kReset, {}});
         over.push_back(id);
       } else if (way.paths.in.end(now) == End::kClosed) {
-        sent_now.push_back({now, id, SessionEvent::Kind::kEnd, {}});
+        add({now, id, SessionEvent::Kind::kEnd, {}});
         over.push_back(id);
       }
     }
     for (const auto id : over) ways_.erase(id);
-    std::ranges::stable_sort(sent_now.begin() + before, sent_now.end(), {}, &ServerEvent::time);
   }
 
  private:

@@ -122,7 +122,7 @@ class Lab(unittest.TestCase):
             self.assertEqual(lab.place("fingers", "i2c"), "i2c:/dev/i2c-1")
             for device, name, scheme, topic in (("parol6", "left", "pty", "parol6.frame.one-answer"),
                                                 ("parol6", "left", "tcp", "parol6.frame.one-answer"),
-                                                ("kinovazed", "kinovazed", "tcp", "kinovazed.line."),
+                                                ("kinovazed", "kinovazed", "tcp", "kinovazed.line.case"),
                                                 ("morap", "fingers", "i2c", "morap.read.")):
                 code, out, err = armjig("conformance", device, "--target", lab.place(name, scheme),
                                         "--tier", "quick", "--allow", "all", "--filter", topic,
@@ -220,10 +220,9 @@ class Lab(unittest.TestCase):
         code, _, err = armjig("lab", "exec", str(lab), "--", "true")
         self.assertEqual(code, 4, "nobody was told anything")
         with up(lab) as running:
-            self.assertEqual(running.run("i2ctransfer", "-y", "1", "r1@0x12").returncode, 0)
+            self.assertEqual(running.run("i2ctransfer", "-y", "1", "w1@0x12", "0x88").returncode, 0)
             code, out, _ = running.end()
-            reports = [json.loads(line)["schema"] for line in out.splitlines()]
-            self.assertEqual((code, reports), (0, ["armjig.report/1"] * 2))
+            self.assertEqual((code, out.count('"armjig.report/1"')), (0, 2), out)
 
     def test_impairments_are_between_the_device_and_its_programs(self):
         lab = self.lab("[[device]]\ndevice = 'parol6'\npty = ''\nimpair = 'in.loss=100%'\n"
@@ -248,7 +247,7 @@ class Lab(unittest.TestCase):
             talked = running.run(PYTHON, "-c", FIND_AND_TALK)
             self.assertIn("answered", talked.stdout, talked.stderr)
             board.send_signal(signal.SIGTERM)
-            board.wait(timeout=30)
+            board.communicate(timeout=30)
             host, port = running.place("demo", "tcp").removeprefix("tcp:").split(":")
             socket.create_connection((host, int(port)), timeout=30).close()  # the others live on
             code, _, err = running.end()
@@ -270,8 +269,9 @@ class Lab(unittest.TestCase):
 
     def test_the_example_of_the_guide_works(self):
         with up(EXAMPLE) as lab:
-            self.assertGreaterEqual(len(lab.places), 3)
-            self.assertEqual(lab.end()[0], 0)
+            self.assertEqual(list(lab.places), ["left", "right", "jaco", "fingers"])
+            self.assertEqual(lab.place("right", "serial"), "serial:/dev/ttyACM1")
+            self.assertEqual(lab.end()[0], 4, "one is checked, and nobody talked to it")
 
 
 def free_port():
@@ -281,4 +281,4 @@ def free_port():
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
