@@ -168,6 +168,20 @@ std::optional<Exit> judge(const Lab& lab, Show show) {
   return all;
 }
 
+/// Names the devices that are not emulated and have gone, and answers what that comes to, if any
+/// has. For after the end of all.
+std::optional<Exit> tell_gone(const Lab& lab) {
+  std::optional<Exit> exit;
+  for (const auto& one : lab.all) {
+    const auto& failure = one.presented->relayed().failure;
+    if (!failure) continue;
+    (void)report({failure->code, fmt::format("{}: {}", one.plan.name, one.plan.target.text),
+                  "the device has gone"});
+    exit = Exit::kRig;
+  }
+  return exit;
+}
+
 Exit up(Devices devices, const UpOptions& options) {
   auto plans = read_lab(options.lab, devices);
   if (!plans) return report(plans.error());
@@ -180,15 +194,8 @@ Exit up(Devices devices, const UpOptions& options) {
     if (options.wants_json) return fmt::print("{}\n", to_json(result));
     fmt::print("{}:\n{}\n", name, to_text(result, style_of(options.colour, stdout)));
   });
-  auto exit = judged.value_or(Exit::kPassed);
-  for (const auto& one : lab->all) {
-    const auto& failure = one.presented->relayed().failure;
-    if (!failure) continue;
-    (void)report({failure->code, fmt::format("{}: {}", one.plan.name, one.plan.target.text),
-                  "the device has gone"});
-    if (exit != Exit::kFindings) exit = Exit::kRig;
-  }
-  return exit;
+  const auto gone = tell_gone(*lab);
+  return judged == Exit::kFindings ? *judged : gone.value_or(judged.value_or(Exit::kPassed));
 }
 
 /// The device whose emulated bus can be read from a file.
@@ -235,9 +242,10 @@ Exit exec(Devices devices, ExecOptions options) {
   if (!files) return report(files.error());
   const auto lab = open_lab(*std::move(plans));
   if (!lab) return report(lab.error());
-  const auto served = ServedDevices::open(lab->to_serve());
-  if (!served) return report(served.error());
-  const auto code = run_program(options.program, (*served)->environment());
+  const auto code =
+      ServedDevices::open(lab->to_serve()).and_then([&](const auto& served) -> Outcome<int> {
+        return run_program(options.program, served->environment());
+      });
   if (!code) return report(code.error());
   const auto ended = static_cast<Exit>(*code);
   const auto judged = judge(*lab, [&](const std::string& name, const Report& result) {
@@ -245,7 +253,10 @@ Exit exec(Devices devices, ExecOptions options) {
     fmt::print(stderr, "{}\n", to_text(result, style_of(options.colour, stderr)));
     files->put(result);
   });
-  return ended == Exit::kPassed ? judged.value_or(ended) : ended;
+  const auto gone = tell_gone(*lab);
+  if (ended != Exit::kPassed) return ended;
+  if (judged == Exit::kFindings) return *judged;
+  return gone.value_or(judged.value_or(ended));
 }
 
 void add_up(CLI::App& lab, Devices devices, Action& action) {

@@ -18,13 +18,14 @@ namespace {
 
 constexpr std::int64_t kLastPort = 65'535;
 constexpr int kLastNode = 255;
+constexpr std::size_t kLongestName = 64;
 
 bool is_name(std::string_view text) noexcept {
   const auto is_fine = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
            c == '_';
   };
-  return !text.empty() && std::ranges::all_of(text, is_fine);
+  return !text.empty() && text.size() <= kLongestName && std::ranges::all_of(text, is_fine);
 }
 
 /// Reads the devices of a lab one after the other; what is wrong is noted in the table.
@@ -63,7 +64,7 @@ class LabReader {
     device.device = found ? *found : nullptr;
     device.name = table.text("name").value_or(kind.value_or(""));
     if (!is_name(device.name) && found) {
-      table.complain("name", "name has to be of letters, digits, - and _");
+      table.complain("name", "name has to be of 1 to 64 letters, digits, - and _");
     }
     if (!names_.insert(device.name).second) {
       table.complain("name", fmt::format("there is another device '{}': give each a name of its "

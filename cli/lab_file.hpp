@@ -18,7 +18,7 @@ namespace armjig::cli {
 /// A `[[device]]` of a lab, checked as far as it can be without opening anything.
 struct LabDevice {
   std::string where;  ///< `FILE:LINE`, for what turns out later
-  std::string name;   ///< letters, digits, `-` and `_`; of no other device
+  std::string name;   ///< 1 to 64 letters, digits, `-` and `_`; of no other device
   const Device* device{};
   Target target;
   Places places;  ///< at least one, none of them another device's

@@ -152,8 +152,6 @@ Outcome<std::string> DeviceNodes::add_board(int number, const usb::Identity& ide
   return bed().add_board(number, identity, terminal);
 }
 
-std::string DeviceNodes::root() const { return bed_ ? bed_->root() : ""; }
-
 std::vector<std::string> DeviceNodes::environment() const {
   if (!bed_) return {};
   // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody changes the environment meanwhile

@@ -34,9 +34,6 @@ class DeviceNodes {
   /// `NAME=VALUE`: what a program needs in its environment. Empty as long as nothing was added.
   [[nodiscard]] std::vector<std::string> environment() const;
 
-  /// The folder with the programs' /dev and /sys. Empty as above.
-  [[nodiscard]] std::string root() const;
-
  private:
   class Bed;
   Bed& bed();

@@ -67,7 +67,7 @@ class BehindLinks : public hosted_by::SenderAround<HostedType> {
   }
   void settle() {
     links_.deliver_out(reached_, this->device());
-    this->take_sent([this](auto sent) { links_.push_in(std::move(sent), this->sent_); });
+    this->take_sent([this](const auto& sent) { links_.push_in(sent, this->sent_); });
     links_.deliver_in(reached_, this->device(), this->sent_);
   }
 
@@ -152,7 +152,7 @@ class ServerWays {
   void deliver_out(Instant now, HostedServer& server) {
     for (auto& [id, way] : ways_) deliver(now, now, id, way, server);
   }
-  void push_in(ServerEvent sent, std::vector<ServerEvent>& sent_now) {
+  void push_in(const ServerEvent& sent, std::vector<ServerEvent>& sent_now) {
     auto* way = find(sent.connection);
     if (way == nullptr) return;
     if (sent.kind == SessionEvent::Kind::kData) {
@@ -161,7 +161,7 @@ class ServerWays {
       way->paths.in.close(sent.time);
     } else {  // nothing is waited for
       ways_.erase(sent.connection);
-      sent_now.push_back(std::move(sent));
+      sent_now.push_back(sent);
     }
   }
   void deliver_in(Instant now, HostedServer& server, std::vector<ServerEvent>& sent_now) {

@@ -217,6 +217,9 @@ class Lab(unittest.TestCase):
         self.assertEqual(code, 1, err)
         self.assertRegex(err, r"armjig: b: [0-9.]+ s morap\.host\.calibrates-first")
         self.assertNotRegex(err, r"armjig: a: [0-9.]+ s morap\.host")
+        code, _, err = armjig("lab", "exec", str(lab), "--", "sh", "-c", bad + "; exit 7",
+                              environment={"PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"})
+        self.assertEqual(code, 7, "a program that fails says it itself")
         code, _, err = armjig("lab", "exec", str(lab), "--", "true")
         self.assertEqual(code, 4, "nobody was told anything")
         with up(lab) as running:

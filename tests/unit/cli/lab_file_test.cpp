@@ -106,6 +106,9 @@ const Refusal kRefusals[] = {
     {"[[device]]\ndevice = 6\n", "lab.toml:2", "a text in quotes"},
     {"[[device]]\ndevice = 'demo'\nname = 'a.b'\n", "lab.toml:3", "letters, digits"},
     {"[[device]]\ndevice = 'demo'\nname = ''\n", "lab.toml:3", "letters, digits"},
+    {"[[device]]\ndevice = 'demo'\nname = "
+     "'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa'\n",
+     "lab.toml:3", "1 to 64"},
     {"[[device]]\ndevice = 'demo'\n[[device]]\ndevice = 'morap'\nname = 'demo'\n", "lab.toml:5",
      "another device 'demo'"},
     {"[[device]]\ndevice = 'demo'\ntarget = 'moon:'\n", "lab.toml:3", "no target"},
