@@ -17,6 +17,8 @@ import sys
 import tempfile
 import unittest
 
+import jsonschema
+
 ARMJIG = sys.argv[1]
 EXAMPLE = sys.argv[2]
 PYTHON = "/usr/bin/python3"  # Debian's own, which has python3-serial
@@ -116,6 +118,8 @@ class Lab(unittest.TestCase):
 
     def test_one_lab_has_a_board_a_server_and_a_bus_for_our_own_programs(self):
         with up(self.lab()) as lab:
+            schema = pathlib.Path(EXAMPLE).parents[2] / "docs/schemas/lab.schema.json"
+            jsonschema.validate(lab.line, json.loads(schema.read_text()))
             self.assertEqual(list(lab.places), ["left", "kinovazed", "fingers"])
             self.assertIn(f"pty:{self.folder}/left", lab.places["left"])
             self.assertEqual(lab.place("left", "serial"), "serial:/dev/ttyACM0")
