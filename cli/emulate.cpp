@@ -2,19 +2,19 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "cli/capture_options.hpp"
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
+#include "cli/presented.hpp"
 #include "cli/report_files.hpp"
 #include "cli/serving.hpp"
 #include "cli/settings.hpp"
 #include "cli/terminal.hpp"
-#include "emulators/host/host.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -52,13 +52,7 @@ struct EmulateOptions {
   std::vector<std::string> settings;
   bool wants_pty = false;
   PtyOptions pty;
-  bool wants_tcp = false;
-  TcpOptions tcp;
-  bool wants_rfc2217 = false;
-  std::uint16_t rfc2217_port = 0;
-  std::string usb_socket;
-  std::optional<std::uint16_t> usbip_port;
-  std::string usb_serial;  ///< its number; empty: the usual one
+  Places places;  ///< but for the pseudo-terminal
   int bus = 1;
   double speed = 1;
   bool wants_json = false;
@@ -68,73 +62,37 @@ struct EmulateOptions {
   std::string colour;
 };
 
-/// The places where a USB device is wanted.
-std::vector<UsbOptions> usb_of(const EmulateOptions& options, usb::Identity identity) {
-  if (!options.usb_serial.empty()) identity.serial_number = options.usb_serial;
-  std::vector<UsbOptions> all;
-  if (!options.usb_socket.empty()) all.push_back({identity, UsbredirSocket{options.usb_socket}});
-  if (options.usbip_port) all.push_back({identity, UsbipPort{*options.usbip_port}});
-  return all;
+// Where a device is served depends on its kind of port.
+
+Outcome<Places> places_of(const OnStream& /*kind*/, const EmulateOptions& options) {
+  auto places = options.places;
+  const bool is_elsewhere = places.tcp || places.rfc2217 || places.is_on_usb();
+  if (options.wants_pty || !options.pty.link.empty() || !is_elsewhere) places.pty = options.pty;
+  return places;
 }
 
-/// What a string of a USB device may be.
-CLI::Validator usb_text() {
-  return CLI::Validator{[](const std::string& text) -> std::string {
-                          const bool is_printable =
-                              std::ranges::all_of(text, [](char c) { return c > ' ' && c <= '~'; });
-                          const bool fits = text.size() <= usb::kLongestText;
-                          return is_printable && fits
-                                     ? ""
-                                     : fmt::format("has to be at most {} visible ASCII characters",
-                                                   usb::kLongestText);
-                        },
-                        ""};
-}
-
-// How a device is served depends on its kind of port.
-
-Outcome<HostOptions> how_to_serve(const OnStream& kind, const EmulateOptions& options,
-                                  const Device& device) {
-  auto host = server_options();
-  host.usb = usb_of(options, usb_identity(device, kind.usb));
-  const bool is_elsewhere = options.wants_tcp || options.wants_rfc2217 || !host.usb.empty();
-  if (options.wants_pty || !options.pty.link.empty() || !is_elsewhere) host.pty = options.pty;
-  if (options.wants_tcp) host.tcp = options.tcp;
-  if (options.wants_rfc2217) {
-    host.rfc2217 =
-        TcpOptions{options.tcp.address, options.rfc2217_port, TcpOptions::Protocol::kRfc2217};
-  }
-  host.speed = options.speed;
-  return host;
-}
-
-Outcome<HostOptions> how_to_serve(const OnServer& kind, const EmulateOptions& options,
-                                  const Device& /*device*/) {
-  if (options.wants_pty || !options.pty.link.empty() || options.wants_rfc2217 ||
-      !usb_of(options, {}).empty()) {
+Outcome<Places> places_of(const OnServer& kind, const EmulateOptions& options) {
+  auto places = options.places;
+  if (options.wants_pty || !options.pty.link.empty() || places.rfc2217 || places.is_on_usb()) {
     return problem(ErrorCode::kUnsupported, options.device,
                    "it is a TCP server and has no pseudo-terminal, serial port or USB; leave out "
                    "--pty, --link, --rfc2217, --usb, --usbip");
   }
-  auto host = server_options();
-  host.tcp = options.tcp;
-  if (!options.wants_tcp) host.tcp->port = kind.tcp_port;
-  host.speed = options.speed;
-  return host;
+  if (!places.tcp) places.tcp = kind.tcp_port;
+  return places;
 }
 
-Outcome<HostOptions> how_to_serve(const OnBus& /*kind*/, const EmulateOptions& options,
-                                  const Device& device) {
-  if (options.wants_pty || !options.pty.link.empty() || options.wants_tcp ||
-      options.wants_rfc2217 || options.speed != 1) {
+Outcome<Places> places_of(const OnBus& /*kind*/, const EmulateOptions& options) {
+  auto places = options.places;
+  if (options.wants_pty || !options.pty.link.empty() || places.tcp || places.rfc2217 ||
+      options.speed != 1) {
     return problem(ErrorCode::kUnsupported, options.device,
                    "a bus takes --set, --bus, --usb, --usbip, --json and --check, what --capture "
                    "needs, and no "
                    "other option");
   }
-  auto host = server_options();
-  host.usb = usb_of(options, usb_identity(device, std::nullopt));
-  return host;
+  if (!places.is_on_usb()) places.bus = options.bus;
+  return places;
 }
 
 Exit emulate(Devices devices, const EmulateOptions& options) {
@@ -145,27 +103,22 @@ Exit emulate(Devices devices, const EmulateOptions& options) {
   const auto& device = **found;
   const auto check = check_if(options.wants_check, device, options.speed);
   if (!check) return report(check.error());
+  const auto places =
+      std::visit([&](const auto& kind) { return places_of(kind, options); }, device.port);
+  if (!places) return report(places.error());
   const auto files = ReportOutputs::open(options.files, options.wants_json ? "--json" : "");
   if (!files) return report(files.error());
   const auto file = open_capture_file("--capture", options.capture);
   if (!file) return report(file.error());
-  // Only real time can be told as a time of day.
-  const auto epoch_ns = options.speed == 1 ? epoch_of({}) : 0;
-  auto capture = HostedCapture::open(*file, device, target_of(*settings), epoch_ns);
-  if (!capture) return report(capture.error());
-  const auto served = std::visit(
-      [&](const auto& kind) -> Outcome<void> {
-        auto emulated = cli::emulate(kind, *settings, options.device);
-        if (!emulated) return tl::unexpected{emulated.error()};
-        auto hosted = capture->watch(*std::move(emulated));
-        if (*check) hosted = (*check)->watch(std::move(hosted));
-        auto how = how_to_serve(kind, options, device);
-        if (!how) return tl::unexpected{how.error()};
-        return serve(std::move(hosted),
-                     {options.device, *std::move(how), options.bus, options.wants_json});
-      },
-      device.port);
-  if (!served) return report(served.error());
+  const Target target{target_of(*settings), "emulated", {}, *settings};
+  const auto presented = Presented::open(
+      device, {.target = target, .capture = *file, .speed = options.speed, .check = check->get()});
+  if (!presented) return report(presented.error());
+  std::vector<ToServe> served;
+  served.push_back(
+      {(*presented)->take(), serving_at(device, options.device, *places, options.speed)});
+  const auto done = serve(std::move(served), {.wants_json = options.wants_json});
+  if (!done) return report(done.error());
   return *check ? conclude(**check, options.wants_json, options.colour, *files) : Exit::kPassed;
 }
 
@@ -180,34 +133,38 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
       ->add_option("--link", options->pty.link,
                    "a name that stays for the pseudo-terminal; removed at the end")
       ->type_name("PATH");
-  auto* tcp = command->add_option("--tcp", options->tcp.port, "on this TCP port; 0: any free one")
-                  ->type_name("PORT")
-                  ->transform(whole(0, 65535));
-  auto* rfc2217 = command
-                      ->add_option("--rfc2217", options->rfc2217_port,
-                                   "as a serial port over Telnet on this TCP port; 0: any free one")
-                      ->type_name("PORT")
-                      ->transform(whole(0, 65535));
+  command->add_option("--tcp", options->places.tcp, "on this TCP port; 0: any free one")
+      ->type_name("PORT")
+      ->transform(whole(0, 65535));
+  command
+      ->add_option("--rfc2217", options->places.rfc2217,
+                   "as a serial port over Telnet on this TCP port; 0: any free one")
+      ->type_name("PORT")
+      ->transform(whole(0, 65535));
   auto* bind = command
-                   ->add_option("--bind", options->tcp.address,
+                   ->add_option("--bind", options->places.bind,
                                 "address for --tcp and --rfc2217 (default: 127.0.0.1)")
                    ->type_name("ADDRESS");
   command
-      ->add_option("--usb", options->usb_socket,
+      ->add_option("--usb", options->places.usb_socket,
                    "as a USB device for clients of usbredir, such as QEMU, on this UNIX socket")
       ->type_name("SOCKET");
   command
-      ->add_option("--usbip", options->usbip_port,
+      ->add_option("--usbip", options->places.usbip,
                    "as a USB device for 'usbip attach' on this port of 127.0.0.1; 0: any free one")
       ->type_name("PORT")
       ->transform(whole(0, 65535));
   auto* usb_serial =
       command
-          ->add_option("--usb-serial", options->usb_serial,
+          ->add_option("--usb-serial", options->places.usb_serial,
                        "its serial number on USB, by which boards of a kind are told "
                        "apart (default: DEVICE-emulated)")
           ->type_name("TEXT")
-          ->check(usb_text());
+          ->check(CLI::Validator{[](const std::string& text) {
+                                   return is_usb_text(text) ? ""
+                                                            : fmt::format("has to be {}", kUsbText);
+                                 },
+                                 ""});
   command
       ->add_option("--speed", options->speed,
                    "device time over wall time, 0.001 to 10000 (default: 1)")
@@ -224,14 +181,12 @@ void add_emulate(CLI::App& app, Devices devices, Action& action) {
                     "say where it listens as one line of JSON; the report of --check too");
   add_capture_options(*command, options->capture);
   add_program_check(*command, options->wants_check, options->files, options->colour);
-  command->callback([options, tcp, rfc2217, bind, usb_serial, devices, &action] {
-    options->wants_tcp = tcp->count() > 0;
-    options->wants_rfc2217 = rfc2217->count() > 0;
-    if (bind->count() > 0 && !options->wants_tcp && !options->wants_rfc2217) {
+  command->callback([options, bind, usb_serial, devices, &action] {
+    const auto& places = options->places;
+    if (bind->count() > 0 && !places.tcp && !places.rfc2217) {
       throw CLI::RequiresError{"--bind", "--tcp or --rfc2217"};
     }
-    const bool is_on_usb = !options->usb_socket.empty() || options->usbip_port;
-    if (usb_serial->count() > 0 && !is_on_usb) {
+    if (usb_serial->count() > 0 && !places.is_on_usb()) {
       throw CLI::RequiresError{"--usb-serial", "--usb or --usbip"};
     }
     action = [options, devices] { return emulate(devices, *options); };

@@ -16,17 +16,19 @@ constexpr std::size_t kMostLines = 3;
 }  // namespace
 
 Outcome<std::unique_ptr<ProgramCheck>> make_program_check(const Device& device,
-                                                          const LinkNoise& noise) {
+                                                          const LinkNoise& noise,
+                                                          std::string_view name) {
   if (!device.program_check) {
     return problem(ErrorCode::kBadValue, "--check",
                    fmt::format("nothing is demanded of programs for {}", device.name));
   }
   auto lines = std::make_shared<std::map<std::string_view, std::size_t>>();
   return std::make_unique<ProgramCheck>(
-      *device.program_check, noise, [lines](const Offence& offence) {
+      *device.program_check, noise,
+      [lines, who = name.empty() ? "" : fmt::format("{}: ", name)](const Offence& offence) {
         if (++(*lines)[offence.requirement] > kMostLines) return;
-        fmt::print(stderr, "armjig: {:.3f} s {}: {}\n", seconds(offence.time), offence.requirement,
-                   offence.what);
+        fmt::print(stderr, "armjig: {}{:.3f} s {}: {}\n", who, seconds(offence.time),
+                   offence.requirement, offence.what);
       });
 }
 

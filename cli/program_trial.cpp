@@ -8,11 +8,11 @@
 #include <utility>
 #include <variant>
 
-#include "cli/served.hpp"
 #include "cli/serving.hpp"
 #include "conformance/program_check.hpp"
+#include "emulators/host/served.hpp"
+#include "emulators/lab/device_nodes.hpp"
 #include "emulators/lab/run_program.hpp"
-#include "emulators/lab/virtual_i2c.hpp"
 #include "emulators/memory/clocked.hpp"
 #include "emulators/memory/overheard.hpp"
 #include "emulators/replay/recorded_host.hpp"
@@ -83,16 +83,16 @@ HostOptions how_to_host(const AnyHosted& hosted, double speed) {
 /// Serves the device while `work(Place)` is done, whose answer it is.
 template <class Work>
 auto with_place(AnyHosted hosted, double speed, Work work) -> decltype(work(Place{})) {
-  if (auto* const bus = std::get_if<std::unique_ptr<HostedBus>>(&hosted)) {
-    const auto i2c = VirtualI2c::open(std::move(*bus), 1);
-    if (!i2c) return tl::unexpected{i2c.error()};
-    return work(Place{"i2c:" + i2c->path(), i2c->environment()});
-  }
-  auto how = how_to_host(hosted, speed);
+  const bool is_bus = std::holds_alternative<std::unique_ptr<HostedBus>>(hosted);
+  auto how = is_bus ? HostOptions{} : how_to_host(hosted, speed);
   auto host = Host::open(std::move(hosted), std::move(how));
   if (!host) return tl::unexpected{host.error()};
   const auto served = serve_aside(*std::move(host));
-  return work(Place{served->target(), {}});
+  if (!is_bus) return work(Place{served->target(), {}});
+  DeviceNodes nodes;
+  const auto node = nodes.add_bus(1, served->host());
+  if (!node) return tl::unexpected{node.error()};
+  return work(Place{"i2c:" + *node, nodes.environment()});
 }
 
 double seconds_of(Duration duration) { return std::chrono::duration<double>{duration}.count(); }

@@ -6,19 +6,16 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "cli/checks.hpp"
 #include "cli/device.hpp"
+#include "cli/presented.hpp"
 #include "cli/serving.hpp"
 #include "cli/terminal.hpp"
-#include "emulators/host/relay.hpp"
-#include "emulators/memory/overheard.hpp"
-#include "harness/rig/real_target.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -42,28 +39,6 @@ constexpr auto kRecordHelp =
     "\n"
     "Exit codes: 0 recorded, 1 findings of --check or --shadow, 3 the device is not there, or "
     "gone.";
-
-/// The device, whether it is emulated or at the other end of a link.
-template <class Kind>
-Outcome<std::unique_ptr<typename Kind::Hosted>> open_device(const Kind& kind, const Target& target,
-                                                            RelayStatistics& statistics) {
-  if (target.is_emulated()) return cli::emulate(kind, target.options, target.text);
-  if constexpr (std::is_same_v<Kind, OnBus>) {
-    return problem(ErrorCode::kUnsupported, target.text,
-                   "adapters do whole transactions only, so that a tap would not be transparent; "
-                   "of a bus only an emulated one can be recorded");
-  } else {
-    auto port = open_target<typename Kind::Port>(target, line_of(kind));
-    if (!port) return tl::unexpected{port.error()};
-    if constexpr (std::is_same_v<Kind, OnStream>) {
-      return relay(*std::move(port), statistics);
-    } else {
-      auto relayed = relay(*std::move(port), statistics);
-      if (!relayed) return problem(relayed.error().code, target.text, "it cannot be waited for");
-      return *std::move(relayed);
-    }
-  }
-}
 
 void print_lateness(const RelayStatistics& statistics) {
   const auto us = [](Duration duration) {
@@ -92,11 +67,7 @@ Exit record(Devices devices, const RecordOptions& options) {
   if (!target) return report(target.error());
   auto serving = parse_listen(options.listen, device);
   if (!serving) return report(serving.error());
-  serving->wants_json = options.wants_json;
-  if (options.is_quiet) {
-    serving->is_quiet = true;
-    serving->how.log = [](std::string_view /*line*/) {};
-  }
+  if (options.is_quiet) serving->how.log = [](std::string_view /*line*/) {};
   const auto check = check_if(options.wants_check, device, 1);
   if (!check) return report(check.error());
   const auto files = ReportOutputs::open(options.files, options.wants_json ? "--json" : "");
@@ -105,22 +76,18 @@ Exit record(Devices devices, const RecordOptions& options) {
   if (!file) return report(file.error());
   auto shadow = LiveShadow::open(device, *target, options.shadow);
   if (!shadow) return report(shadow.error());
-  RelayStatistics statistics;
-  std::optional<HostedCapture> capture;
-  const auto served = std::visit(
-      [&](const auto& kind) -> Outcome<void> {
-        auto opened = open_device(kind, *target, statistics);
-        if (!opened) return tl::unexpected{opened.error()};
-        auto begun = HostedCapture::open(*file, device, options.target, epoch_of({}));
-        if (!begun) return tl::unexpected{begun.error()};
-        capture = *std::move(begun);
-        auto hosted = capture->watch(*std::move(opened));
-        if (*shadow) hosted = overhear(std::move(hosted), (*shadow)->overhearer());
-        if (*check) hosted = (*check)->watch(std::move(hosted));
-        return serve(std::move(hosted), *serving);
-      },
-      device.port);
-  if (!served) return report(served.error());
+  const auto presented =
+      Presented::open(device, {.target = *target,
+                               .capture = *file,
+                               .witness = *shadow ? &(*shadow)->overhearer() : nullptr,
+                               .check = check->get()});
+  if (!presented) return report(presented.error());
+  std::vector<ToServe> served;
+  served.push_back({(*presented)->take(), *std::move(serving)});
+  const auto done =
+      serve(std::move(served), {.wants_json = options.wants_json, .is_quiet = options.is_quiet});
+  if (!done) return report(done.error());
+  const auto& statistics = (*presented)->relayed();
   if (!options.is_quiet) print_lateness(statistics);
   auto exit =
       *check ? conclude(**check, options.wants_json, options.colour, *files) : Exit::kPassed;

@@ -6,8 +6,8 @@
 #include <utility>
 #include <variant>
 
-#include "cli/served.hpp"
 #include "emulators/host/host.hpp"
+#include "emulators/host/served.hpp"
 #include "harness/rig/real_target.hpp"
 
 namespace armjig::cli {

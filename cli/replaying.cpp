@@ -160,13 +160,15 @@ Outcome<ReplayedRecording> play_recorded_device(Devices devices, const std::stri
   const auto& [session, device] = *known;
   auto serving = parse_listen(how.place, *device);
   if (!serving) return tl::unexpected{serving.error()};
-  serving->wants_json = how.wants_json;
-  serving->is_quiet = true;
   auto [hosted, said] = play_device(session.link.kind, session.records,
                                     {.speed = how.speed,
                                      .trailing = how.rules.time_tolerance,
                                      .make_dissector = device->make_dissector});
-  if (auto served = serve(std::move(hosted), *serving); !served) {
+  std::vector<ToServe> devices_to_serve;
+  devices_to_serve.push_back({std::move(hosted), *std::move(serving)});
+  if (auto served =
+          serve(std::move(devices_to_serve), {.wants_json = how.wants_json, .is_quiet = true});
+      !served) {
     return tl::unexpected{served.error()};
   }
   warn_of_patience(*said);

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/serving.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -18,8 +25,8 @@
 #include "cli/device_inputs.hpp"
 #include "cli/program_judge.hpp"
 #include "cli/terminal.hpp"
-#include "emulators/lab/virtual_i2c.hpp"
 #include "harness/core/number.hpp"
+#include "harness/link/descriptor.hpp"
 
 namespace armjig::cli {
 namespace {
@@ -27,10 +34,10 @@ namespace {
 /// Scheduling of client and emulator; more than that is seen only on a machine that has no time.
 constexpr Duration kSchedulingNoise = std::chrono::milliseconds{10};
 
-/// Programs find a virtual bus only in its `environment`.
+/// For the only device. Programs find a virtual bus only in its `environment`.
 void announce(const Serving& serving, const std::vector<std::string>& targets,
-              const std::vector<std::string>& environment = {}) {
-  if (serving.wants_json) {
+              const std::vector<std::string>& environment, bool wants_json) {
+  if (wants_json) {
     nlohmann::ordered_json line{
         {"schema", "armjig.emulate/1"}, {"device", serving.device}, {"listening", targets}};
     if (!environment.empty()) line["environment"] = environment;
@@ -46,39 +53,134 @@ void announce(const Serving& serving, const std::vector<std::string>& targets,
       fmt::print("listening {}{}\n", targets[i], i == link ? " (link)" : "");
     }
   }
-  std::fflush(stdout);  // who waits for the line may read it from a pipe
 }
 
-void print_statistics(const HostStatistics& statistics) {
+void announce_lab(const ServedDevices& devices, bool wants_json) {
+  const auto environment = devices.environment();
+  if (wants_json) {
+    nlohmann::ordered_json line{{"schema", "armjig.lab/1"}};
+    for (const auto& one : devices.all()) {
+      line["devices"].push_back(
+          {{"name", one.serving.name}, {"device", one.serving.device}, {"listening", one.targets}});
+    }
+    if (!environment.empty()) line["environment"] = environment;
+    line["pid"] = ::getpid();
+    return fmt::print("{}\n", line.dump());
+  }
+  for (const auto& one : devices.all()) {
+    fmt::print("{} ({}): {}\n", one.serving.name, one.serving.device, fmt::join(one.targets, " "));
+  }
+  if (environment.empty()) return;
+  fmt::print("device nodes are there for programs that are started with\n  {} PROGRAM\n",
+             fmt::join(environment, " "));
+}
+
+/// `who` is empty or ends with a blank.
+void print_statistics(const HostStatistics& statistics, std::string_view who) {
   const auto& links = statistics.links;
   fmt::print(stderr,
-             "armjig: {} clients served, {} refused; {} bytes in, {} bytes out, {} frames "
+             "armjig: {}{} clients served, {} refused; {} bytes in, {} bytes out, {} frames "
              "dropped\n",
-             links.clients, links.refused, links.bytes_in, links.bytes_out, links.frames_dropped);
+             who, links.clients, links.refused, links.bytes_in, links.bytes_out,
+             links.frames_dropped);
   if (statistics.lost > Duration::zero()) {
-    fmt::print(stderr, "armjig: this machine is too slow: {:.3f} s of device time were lost\n",
-               std::chrono::duration<double>{statistics.lost}.count());
+    fmt::print(stderr, "armjig: {}this machine is too slow: {:.3f} s of device time were lost\n",
+               who, std::chrono::duration<double>{statistics.lost}.count());
   }
 }
 
-/// Blocks the signals that end a server, for this thread and those that it starts.
-sigset_t block_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
+constexpr char kSignalled = 's';
+constexpr char kGone = 'g';
+std::atomic<int> end_of_server{-1};  ///< a pipe
+static_assert(std::atomic<int>::is_always_lock_free);
+
+extern "C" void on_end_of_server(int /*signal*/) {
+  const auto error = errno;
+  (void)!::write(end_of_server, &kSignalled, 1);
+  errno = error;
 }
 
-Outcome<void> serve_bus(std::unique_ptr<HostedBus> hosted, const Serving& serving) {
-  const auto signals = block_signals();
-  const auto i2c = VirtualI2c::open(std::move(hosted), serving.bus);
-  if (!i2c) return tl::unexpected{i2c.error()};
-  announce(serving, {"i2c:" + i2c->path()}, i2c->environment());
-  int signal = 0;
-  ::sigwait(&signals, &signal);
-  return {};
-}
+/// What ends a server: signals, also to threads of libraries, or that its devices have gone by
+/// themselves. One at a time.
+class EndOfServer {
+ public:
+  EndOfServer() {
+    std::array<int, 2> ends{-1, -1};
+    (void)!::pipe2(ends.data(), O_CLOEXEC);
+    reading_ = Descriptor{ends[0]};
+    writing_ = Descriptor{ends[1]};
+    end_of_server = writing_.value();
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      ::sigaction(kSignals[i], nullptr, &before_[i]);
+      if (kSignals[i] == SIGHUP && before_[i].sa_handler == SIG_IGN) continue;  // nohup
+      struct sigaction action{};
+      action.sa_handler = on_end_of_server;
+      action.sa_flags = SA_RESTART;
+      ::sigaction(kSignals[i], &action, nullptr);
+    }
+  }
+  EndOfServer(const EndOfServer&) = delete;
+  EndOfServer& operator=(const EndOfServer&) = delete;
+  ~EndOfServer() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      ::sigaction(kSignals[i], &before_[i], nullptr);
+    }
+  }
+
+  /// From any thread: one has gone.
+  void note_gone() const noexcept { (void)!::write(writing_.value(), &kGone, 1); }
+
+  /// Waits for a signal, or until so many have gone.
+  void wait(std::size_t count) const {
+    char what{};
+    for (std::size_t gone = 0; gone < count;) {
+      const auto size = ::read(reading_.value(), &what, 1);
+      if (size < 0 && errno == EINTR) continue;
+      if (size <= 0 || what == kSignalled) return;
+      ++gone;
+    }
+  }
+
+ private:
+  static constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+
+  std::array<struct sigaction, kSignals.size()> before_{};
+  Descriptor reading_;
+  Descriptor writing_;
+};
+
+/// The inputs of devices, by the names that people write.
+class InputsByName {
+ public:
+  InputsByName(const ServedDevices& devices, bool has_prefixes) : has_prefixes_{has_prefixes} {
+    for (const auto& one : devices.all()) {
+      auto& host = hosts_[has_prefixes ? one.serving.name : ""] = &one.served->host();
+      for (const auto& input : host->inputs()) {
+        names_.push_back(has_prefixes ? fmt::format("{}.{}", one.serving.name, input.name)
+                                      : std::string{input.name});
+        values_.push_back(input.values);
+      }
+    }
+    for (std::size_t i = 0; i < names_.size(); ++i) inputs_.push_back({names_[i], values_[i]});
+  }
+
+  [[nodiscard]] std::span<const DeviceInput> all() const noexcept { return inputs_; }
+
+  void set(const std::string& name, std::int64_t value,
+           std::function<void(bool is_taken)> tell) const {
+    const auto dot = has_prefixes_ ? name.find('.') : std::string::npos;
+    const auto host = hosts_.find(dot == std::string::npos ? "" : name.substr(0, dot));
+    if (host == hosts_.end()) return tell(false);
+    host->second->set_input(has_prefixes_ ? name.substr(dot + 1) : name, value, std::move(tell));
+  }
+
+ private:
+  bool has_prefixes_;
+  std::map<std::string, Host*> hosts_;
+  std::vector<std::string> names_;
+  std::vector<std::string_view> values_;
+  std::vector<DeviceInput> inputs_;
+};
 
 tl::unexpected<Problem> bad_place(const std::string& listen, std::string_view hint) {
   return problem(ErrorCode::kBadValue, "--listen " + listen, std::string{hint});
@@ -140,53 +242,133 @@ std::string_view take_place(const OnStream& /*kind*/, std::string_view place, Se
   return "write pty:, pty:PATH, tcp:PORT, tcp:HOST:PORT, rfc2217:PORT or rfc2217:HOST:PORT";
 }
 
-}  // namespace
-
-HostOptions server_options() {
-  HostOptions host;
-  host.on_signal = HostOptions::OnSignal::kStop;
-  host.log = [](std::string_view line) { fmt::print(stderr, "armjig: {}\n", line); };
-  return host;
-}
-
-usb::Identity usb_identity(const Device& device, std::optional<UsbId> numbers) {
+/// What an emulated device is called on USB: by the numbers of its entry or, if it has none, by
+/// those that pid.codes keeps for trials.
+usb::Identity usb_identity(const Device& device) {
   constexpr UsbId kForTrials{0x1209, 0x0001};
-  const auto id = numbers.value_or(kForTrials);
+  const auto* const stream = std::get_if<OnStream>(&device.port);
+  const auto id = stream == nullptr ? kForTrials : stream->usb.value_or(kForTrials);
   return {.vendor = id.vendor,
           .product = id.product,
           .manufacturer = "armjig",
           .product_name = std::string{device.title},
-          .serial_number = fmt::format("{}-emulated", device.name)};
+          .serial_number = {}};
+}
+
+Outcome<ServedDevices::One> open_one(AnyHosted hosted, const Serving& serving,
+                                     const std::function<void()>& when_over, DeviceNodes& nodes) {
+  auto host = Host::open(std::move(hosted), serving.how);
+  if (!host) return tl::unexpected{host.error()};
+  ServedDevices::One one{serving, serve_aside(*std::move(host), when_over), {}};
+  one.targets = one.served->targets();
+  const auto add = [&](std::string_view scheme, const Outcome<std::string>& node) {
+    return node.map([&](const std::string& path) {
+      one.targets.insert(one.targets.begin(), fmt::format("{}:{}", scheme, path));
+    });
+  };
+  Outcome<void> added;
+  if (serving.bus) added = add("i2c", nodes.add_bus(*serving.bus, one.served->host()));
+  if (serving.board) {
+    constexpr std::string_view kTerminal{"pty:"};
+    const auto terminal = one.targets.front().substr(kTerminal.size());
+    added = add("serial", nodes.add_board(*serving.board, serving.identity, terminal));
+  }
+  if (!added) return tl::unexpected{std::move(added.error())};
+  return one;
+}
+
+}  // namespace
+
+bool is_usb_text(std::string_view text) noexcept {
+  return text.size() <= usb::kLongestText &&
+         std::ranges::all_of(text, [](char c) { return c > ' ' && c <= '~'; });
+}
+
+std::function<void(std::string_view line)> log_as(std::string name) {
+  return [who = name.empty() ? "" : name + ": "](std::string_view line) {
+    fmt::print(stderr, "armjig: {}{}\n", who, line);
+  };
+}
+
+Serving serving_at(const Device& device, std::string name, const Places& places, double speed) {
+  auto identity = usb_identity(device);
+  identity.serial_number =
+      places.usb_serial.empty() ? fmt::format("{}-emulated", name) : places.usb_serial;
+  HostOptions how{.pty = places.pty, .speed = speed, .log = log_as({})};
+  const auto tcp = [&places](std::uint16_t port, TcpOptions::Protocol protocol) {
+    TcpOptions options{.port = port, .protocol = protocol};
+    if (!places.bind.empty()) options.address = places.bind;
+    return options;
+  };
+  if (places.tcp) how.tcp = tcp(*places.tcp, TcpOptions::Protocol::kPlain);
+  if (places.rfc2217) how.rfc2217 = tcp(*places.rfc2217, TcpOptions::Protocol::kRfc2217);
+  if (!places.usb_socket.empty()) {
+    how.usb.push_back({identity, UsbredirSocket{places.usb_socket}});
+  }
+  if (places.usbip) how.usb.push_back({identity, UsbipPort{*places.usbip}});
+  if (places.board && !how.pty) how.pty.emplace();
+  return {.name = std::move(name),
+          .device = std::string{device.name},
+          .how = std::move(how),
+          .board = places.board,
+          .bus = places.bus,
+          .identity = std::move(identity)};
 }
 
 Outcome<Serving> parse_listen(const std::string& listen, const Device& device) {
-  Serving serving{.device = std::string{device.name}, .how = server_options()};
+  auto serving = serving_at(device, std::string{device.name}, {});
   const auto hint =
       std::visit([&](const auto& kind) { return take_place(kind, listen, serving); }, device.port);
   if (!hint.empty()) return bad_place(listen, hint);
   return serving;
 }
 
-Outcome<void> serve(AnyHosted hosted, const Serving& serving) {
-  auto* const bus = std::get_if<std::unique_ptr<HostedBus>>(&hosted);
-  if (bus != nullptr && serving.how.usb.empty()) {
-    return serve_bus(std::move(*bus), serving);
+Outcome<std::unique_ptr<ServedDevices>> ServedDevices::open(std::vector<ToServe> devices,
+                                                            std::function<void()> when_over) {
+  auto opened = std::make_unique<ServedDevices>();
+  const bool is_only = devices.size() == 1;
+  for (auto& [hosted, serving] : devices) {
+    auto one = open_one(std::move(hosted), serving, when_over, opened->nodes_);
+    if (!one) {
+      auto& where = one.error().where;
+      if (!is_only) where = fmt::format("{}: {}", serving.name, where);
+      return tl::unexpected{std::move(one.error())};
+    }
+    opened->all_.push_back(*std::move(one));
   }
+  return opened;
+}
+
+Outcome<void> serve(std::vector<ToServe> devices, const ServerManner& manner) {
   const bool takes_inputs = has_standard_input();
-  auto host = Host::open(std::move(hosted), serving.how);
-  if (!host) return tl::unexpected{host.error()};
-  const auto inputs = host->inputs();
-  announce(serving, host->targets());
+  const bool is_lab = manner.announcement == ServerManner::Announcement::kLab;
+  const EndOfServer end;
+  const auto opened = ServedDevices::open(std::move(devices), [&end] { end.note_gone(); });
+  if (!opened) return tl::unexpected{opened.error()};
+  const auto& all = (*opened)->all();
+  if (is_lab) {
+    announce_lab(**opened, manner.wants_json);
+  } else {
+    announce(all.front().serving, all.front().targets, (*opened)->environment(), manner.wants_json);
+  }
+  std::fflush(stdout);  // who waits for the line may read it from a pipe
   {
+    const InputsByName inputs{**opened, is_lab};
     std::optional<DeviceInputs> by_hand;
-    if (takes_inputs && !inputs.empty()) {
-      by_hand.emplace(inputs, [&host](auto name, auto value, auto tell) {
-        host->set_input(std::move(name), value, std::move(tell));
+    if (takes_inputs && !inputs.all().empty()) {
+      by_hand.emplace(inputs.all(), [&inputs](const auto& name, auto value, auto tell) {
+        inputs.set(name, value, std::move(tell));
       });
     }
-    host->run();
+    end.wait(all.size());
   }
-  if (!serving.is_quiet) print_statistics(host->statistics());
+  for (const auto& one : all) {
+    one.served->end();
+    const auto who = is_lab ? fmt::format("{}: ", one.serving.name) : "";
+    if (!manner.is_quiet && !one.serving.bus) {
+      print_statistics(one.served->host().statistics(), who);
+    }
+  }
   return {};
 }
 
@@ -196,10 +378,10 @@ LinkNoise link_noise_of(const Device& device, double speed) {
   return {std::chrono::duration_cast<Duration>(kSchedulingNoise * speed)};
 }
 
-Outcome<std::unique_ptr<ProgramCheck>> check_if(bool is_wanted, const Device& device,
-                                                double speed) {
+Outcome<std::unique_ptr<ProgramCheck>> check_if(bool is_wanted, const Device& device, double speed,
+                                                std::string_view name) {
   if (!is_wanted) return nullptr;
-  return make_program_check(device, link_noise_of(device, speed));
+  return make_program_check(device, link_noise_of(device, speed), name);
 }
 
 void add_program_check(CLI::App& command, bool& is_wanted, ReportFiles& files,

@@ -6,10 +6,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <csignal>
 #include <future>
+#include <mutex>
 #include <thread>
 
 #include "emulators/host/loop.hpp"
@@ -33,6 +32,8 @@ constexpr auto kLate = 10ms;
 constexpr auto kBudget = 50ms;
 /// Virtual time that is computed at once, between two looks at the budget.
 constexpr Duration kStride = 1s;
+/// How often whoever waits for the bus looks whether the loop still runs.
+constexpr auto kGlance = 100ms;
 /// Too short a wait to be worth a timer, whose waking alone takes as long.
 constexpr auto kShortWait = 50us;
 
@@ -49,18 +50,11 @@ class Host::LoopOnAsio final : public Loop {
         reached_{front_->begin()},
         clock_{options_.speed, Wall::now(), reached_},
         timer_{context_},
-        signals_{context_},
         waker_{context_} {
     if (const auto file = device_.wakes_by()) {
       waker_.assign(*file);
       wait_for_device();
     }
-    if (options_.on_signal == HostOptions::OnSignal::kNothing) return;
-    signals_.add(SIGINT);
-    signals_.add(SIGTERM);
-    signals_.async_wait([this](const error_code& error, int) {
-      if (!error) stop();
-    });
   }
 
   ~LoopOnAsio() override {
@@ -88,16 +82,24 @@ class Host::LoopOnAsio final : public Loop {
   }
 
   void with_bus(const std::function<void(BusPort& bus)>& use) {
-    std::promise<Wall::time_point> end;
-    boost::asio::post(context_, [this, &use, &end] {
+    const auto turn = std::make_shared<BusTurn>();
+    boost::asio::post(context_, [this, &use, turn] {
+      const std::lock_guard lock{turn->guard};
+      if (turn->is_given_up) return;
       auto& bus = *front_->bus();
       bus.wait_until(catch_up());
       use(bus);
       reach(bus.now());
       pump();
-      end.set_value(clock_.wall_time(bus.now(), Wall::now()));
+      turn->end.set_value(clock_.wall_time(bus.now(), Wall::now()));
     });
-    std::this_thread::sleep_until(end.get_future().get());
+    auto end = turn->end.get_future();
+    while (end.wait_for(kGlance) != std::future_status::ready) {
+      const std::lock_guard lock{turn->guard};
+      turn->is_given_up = context_.stopped();
+      if (turn->is_given_up && end.wait_for(0s) != std::future_status::ready) return;
+    }
+    std::this_thread::sleep_until(end.get());
   }
 
   [[nodiscard]] std::vector<std::string> targets() const { return front_->targets(); }
@@ -154,6 +156,13 @@ class Host::LoopOnAsio final : public Loop {
   void log(std::string_view line) const override { options_.log(line); }
 
  private:
+  /// One use of the bus, by another thread.
+  struct BusTurn {
+    std::mutex guard;
+    std::promise<Wall::time_point> end;
+    bool is_given_up = false;
+  };
+
   void wait_for_device() {
     waker_.async_wait(stream_descriptor::wait_read, [this](const error_code& error) {
       if (error) return;
@@ -193,7 +202,6 @@ class Host::LoopOnAsio final : public Loop {
   PacedClock clock_;
   Lookout lookout_{kKeepUp + kLate, Wall::now()};
   boost::asio::steady_timer timer_;
-  boost::asio::signal_set signals_;
   stream_descriptor waker_;  ///< of a device that is not emulated
   bool is_pump_posted_ = false;
   bool is_timer_set_ = false;

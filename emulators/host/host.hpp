@@ -37,15 +37,12 @@ struct UsbOptions {
 /// Where and how a device is hosted. A stream has at least one link, a server TCP and nothing else,
 /// a bus USB or nothing (`Host::with_bus`).
 struct HostOptions {
-  enum class OnSignal : std::uint8_t { kNothing, kStop };
-
   std::optional<PtyOptions> pty;
   std::optional<TcpOptions> tcp;
   std::optional<TcpOptions> rfc2217;  ///< of a stream, a serial port over Telnet
   std::vector<UsbOptions>
       usb{};         ///< each is a device of its own; the inputs at their cables do to all
   double speed = 1;  ///< virtual over wall time, `PacedClock::kSlowest` to `kFastest`
-  OnSignal on_signal = OnSignal::kNothing;  ///< `kStop`: SIGINT and SIGTERM end `run`
   std::function<void(std::string_view line)> log = [](std::string_view /*line*/) {};
 };
 
@@ -94,8 +91,8 @@ class Host {
   void set_input(std::string name, std::int64_t value, std::function<void(bool is_taken)> tell);
 
   /// Has `use` talk to the bus at its present time while `run` runs, and there, one after the
-  /// other; comes back when wall time has reached the end of that. May be called from any thread
-  /// but that. Requires a bus.
+  /// other; comes back when wall time has reached the end of that, or without if `run` has ended.
+  /// May be called from any thread but that. Requires a bus.
   void with_bus(const std::function<void(BusPort& bus)>& use);
 
   [[nodiscard]] HostStatistics statistics() const;

@@ -114,19 +114,8 @@ int error_of(const Result<Transfer>& result) {
 
 }  // namespace
 
-Outcome<std::unique_ptr<I2cAdapter>> I2cAdapter::open(std::unique_ptr<HostedBus> bus,
-                                                      HostOptions options) {
-  auto host = Host::open(std::move(bus), std::move(options));
-  if (!host) return tl::unexpected{host.error()};
-  return std::unique_ptr<I2cAdapter>{new I2cAdapter{*std::move(host)}};
-}
-
-I2cAdapter::I2cAdapter(Host host) : host_{std::move(host)}, thread_{[this] { host_.run(); }} {}
-
-I2cAdapter::~I2cAdapter() { host_.stop(); }
-
 int I2cAdapter::transfer(std::span<const BusMessage> messages) {
-  int error = 0;
+  int error = ENODEV;
   host_.with_bus([&](BusPort& bus) { error = error_of(bus.transfer(messages)); });
   return error;
 }

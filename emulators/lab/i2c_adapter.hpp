@@ -4,19 +4,16 @@
 #include <linux/i2c.h>
 
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <thread>
 
 #include "emulators/host/host.hpp"
-#include "emulators/memory/hosted.hpp"
 #include "harness/link/bus_port.hpp"
 
 namespace armjig {
 
 /// An emulated bus as the kernel would show it: transactions and SMBus commands in, error numbers
-/// out. It lives on the wall clock (`Host`), in a thread of its own; a transaction takes as long as
-/// its bits do. All functions may be called from any thread; one transaction runs at a time.
+/// out. It lives on the wall clock (`Host`); a transaction takes as long as its bits do. All
+/// functions may be called from any thread; one transaction runs at a time.
 class I2cAdapter {
  public:
   /// What it can do, as `I2C_FUNCS` tells it.
@@ -25,16 +22,11 @@ class I2cAdapter {
       I2C_FUNC_SMBUS_WORD_DATA | I2C_FUNC_SMBUS_PROC_CALL | I2C_FUNC_SMBUS_WRITE_BLOCK_DATA |
       I2C_FUNC_SMBUS_I2C_BLOCK;
 
-  /// Problems: those of `Host::open`.
-  [[nodiscard]] static Outcome<std::unique_ptr<I2cAdapter>> open(std::unique_ptr<HostedBus> bus,
-                                                                 HostOptions options = {});
-  ~I2cAdapter();
-
-  /// For its inputs and statistics.
-  [[nodiscard]] Host& host() noexcept { return host_; }
+  /// `host` has a bus, runs, and must outlive this.
+  explicit I2cAdapter(Host& host) noexcept : host_{host} {}
 
   /// 0 or an error number: `ENXIO` for a refused address, `EIO` for a refused byte, `EAGAIN` for
-  /// lost arbitration or a line that is held, `ETIMEDOUT`.
+  /// lost arbitration or a line that is held, `ETIMEDOUT`, `ENODEV` if the host has ended.
   [[nodiscard]] int transfer(std::span<const BusMessage> messages);
 
   /// An SMBus command made of transactions; `size` is one of `I2C_SMBUS_QUICK` and so on. Also
@@ -43,10 +35,7 @@ class I2cAdapter {
                           std::uint32_t size, i2c_smbus_data& data);
 
  private:
-  explicit I2cAdapter(Host host);
-
-  Host host_;
-  std::jthread thread_;  ///< lets the devices live, also while nobody talks to them
+  Host& host_;
 };
 
 }  // namespace armjig

@@ -171,6 +171,12 @@ Outcome<std::vector<OptionGroup>> TomlTable::groups() {
   return finish().map([&] { return std::move(groups); });
 }
 
+bool TomlTable::has(std::string_view key) const { return part_->table->contains(key); }
+
+std::string TomlTable::where() const {
+  return fmt::format("{}:{}", file_->path, part_->table->source().begin.line);
+}
+
 void TomlTable::complain(std::string_view key, std::string hint) {
   const auto* node = part_->table->get(key);
   file_->note(node == nullptr ? part_->table->source() : node->source(), std::move(hint));

@@ -36,6 +36,11 @@ class TomlTable {
   /// a key stands for `-`. Nothing else may be in the file. Problems: `kMalformed`.
   [[nodiscard]] Outcome<std::vector<OptionGroup>> groups();
 
+  /// Whether the key is there. Whoever asks for a value need not ask this.
+  [[nodiscard]] bool has(std::string_view key) const;
+  /// `FILE:LINE` at which this table begins.
+  [[nodiscard]] std::string where() const;
+
   /// Notes that the value of `key` will not do, or that it is missing.
   void complain(std::string_view key, std::string hint);
 

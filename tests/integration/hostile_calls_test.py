@@ -62,6 +62,27 @@ def make_files(folder):
         "nan_toml": write("nan.toml", "[[node]]\nid = 2\ninertia = nan\n"),
         "big_id": write("bigid.toml", "[[node]]\nid = 999\n"),
         "toaster": write("toaster.toml", "[[toaster]]\nid = 2\n"),
+        "lab": write("lab.toml", "[[device]]\ndevice = 'demo'\n"),
+        "lab_odd": write("lab1.toml", "[[device]]\ndevice = 'demo'\ncolour = 'red'\n"),
+        "lab_device": write("lab2.toml", "[[device]]\ndevice = 'parol7'\n"),
+        "lab_target": write("lab3.toml", "[[device]]\ndevice = 'demo'\ntarget = 'moon:'\n"),
+        "lab_twice": write("lab4.toml", "[[device]]\nname = 'left'\ndevice = 'parol6'\ntcp = 4000\n"
+                           "[[device]]\ndevice = 'kinovazed'\ntcp = 4000\n"),
+        "lab_names": write("lab5.toml", "[[device]]\ndevice = 'parol6'\n"
+                           "[[device]]\ndevice = 'parol6'\n"),
+        "lab_server": write("lab6.toml", "[[device]]\ndevice = 'kinovazed'\npty = ''\n"),
+        "lab_stream": write("lab7.toml", "[[device]]\ndevice = 'parol6'\ni2c = 1\n"),
+        "lab_bus": write("lab8.toml", "[[device]]\ndevice = 'morap'\ntcp = 4000\n"),
+        "lab_impair": write("lab9.toml", "[[device]]\ndevice = 'demo'\nimpair = 'loss=2'\n"),
+        "lab_option": write("lab10.toml", "[[device]]\ndevice = 'parol6'\n"
+                            "target = 'emulated:?fault=none-such'\n"),
+        "lab_disconnect": write("lab11.toml", "[[device]]\ndevice = 'demo'\n"
+                                "impair = 'disconnect=1%'\n"),
+        "lab_absent": write("lab12.toml", "[[device]]\ndevice = 'parol6'\n"
+                            "target = 'serial:/dev/none-such'\n"),
+        "lab_capture": write("lab13.toml", "[[device]]\ndevice = 'parol6'\n"
+                             "capture = '/dev/none/x.jsonl'\n"),
+        "lab_type": write("lab14.toml", "[[device]]\ndevice = 'parol6'\ntcp = 'http'\n"),
         "huge": folder / "huge",
         "deep_urdf": write("deep.urdf", "<robot name='r'>" + "<a>" * 200_000),
         "urdf": write("two.urdf", "<robot name='r'><link name='a'/><link name='b'/><joint name='j'"

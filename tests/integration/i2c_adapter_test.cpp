@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "conformance/program_check.hpp"
+#include "emulators/host/served.hpp"
 #include "emulators/morap/options.hpp"
 #include "harness/core/hex.hpp"
 
@@ -62,7 +63,9 @@ class I2cAdapterTest : public ::testing::Test {
       {"test", []() noexcept { return std::span<const Requirement>{}; }, make_checker<Overhearing>},
       {},
       [](const Offence& /*offence*/) {}};
-  std::unique_ptr<I2cAdapter> adapter = I2cAdapter::open(check.watch(make_hosted(bus()))).value();
+  std::unique_ptr<Served> served =
+      serve_aside(Host::open(check.watch(make_hosted(bus())), {}).value());
+  std::unique_ptr<I2cAdapter> adapter = std::make_unique<I2cAdapter>(served->host());
 };
 
 TEST_F(I2cAdapterTest, TellsWhatWasAcknowledgedOfEachMessage) {

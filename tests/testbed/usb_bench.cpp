@@ -1,63 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/testbed/usb_bench.hpp"
 
-#include <asm/ioctls.h>
-#include <asm/termbits.h>
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <map>
-#include <mutex>
 
 namespace armjig::testing {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The bench answers on a thread of the library.
-std::mutex speeds_guard;
-std::map<std::string, std::uint32_t> speeds;
-
-void note_speed(UMockdevIoctlClient* client) {
-  auto* argument = umockdev_ioctl_client_get_arg(client);
-  auto* modes = umockdev_ioctl_data_resolve(argument, 0, sizeof(termios2), nullptr);
-  if (modes == nullptr) return;
-  const std::lock_guard lock{speeds_guard};
-  speeds[umockdev_ioctl_client_get_devnode(client)] =
-      reinterpret_cast<const termios2*>(modes->data)->c_ospeed;
-  g_object_unref(modes);
-}
-
-/// A pseudo-terminal has no modem lines; it knows everything else that a serial port is asked for.
-gboolean answer(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpointer /*data*/) {
-  switch (umockdev_ioctl_client_get_request(client)) {
-    case TIOCMGET:
-    case TIOCMSET:
-    case TIOCMBIS:
-    case TIOCMBIC:
-      umockdev_ioctl_client_complete(client, 0, 0);
-      return TRUE;
-    case TCSETS2:
-      note_speed(client);
-      break;
-    default:
-      break;
-  }
-  gint error_number = 0;
-  const auto result = umockdev_ioctl_client_execute(client, &error_number, nullptr);
-  umockdev_ioctl_client_complete(client, result, error_number);
-  return TRUE;
-}
-
 }  // namespace
 
-UsbBench::UsbBench() : bed_{umockdev_testbed_new()}, ioctls_{umockdev_ioctl_base_new()} {
-  g_signal_connect(ioctls_, "handle-ioctl", G_CALLBACK(answer), nullptr);
-}
+UsbBench::UsbBench() : bed_{umockdev_testbed_new()} {}
 
 UsbBench::~UsbBench() {
-  g_object_unref(ioctls_);
+  ports_.clear();
   g_object_unref(bed_);
 }
 
@@ -73,7 +32,9 @@ void UsbBench::plug_in(const Board& board, const std::string& terminal) {
   const auto tty = add("tty", board.name, interface.c_str(), {}, {"DEVNAME", node.c_str()});
   umockdev_testbed_set_attribute_link(bed_, tty.c_str(), "device", "..");
   link(node, terminal);
-  ASSERT_TRUE(umockdev_testbed_attach_ioctl(bed_, node.c_str(), ioctls_, nullptr));
+  auto& port = ports_[node];
+  port.calls = lab::answer_tty_calls(port.lines);
+  ASSERT_TRUE(umockdev_testbed_attach_ioctl(bed_, node.c_str(), port.calls.get(), nullptr));
 }
 
 void UsbBench::pull_out(const Board& board) {
@@ -114,9 +75,8 @@ void UsbBench::link(const std::string& path, const std::string& to) const {
 }
 
 std::uint32_t UsbBench::baud_of(const std::string& path) const {
-  const std::lock_guard lock{speeds_guard};
-  const auto speed = speeds.find(path);
-  return speed == speeds.end() ? 0 : speed->second;
+  const auto port = ports_.find(path);
+  return port == ports_.end() ? 0 : port->second.lines.baud.load();
 }
 
 }  // namespace armjig::testing

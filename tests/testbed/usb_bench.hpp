@@ -4,9 +4,11 @@
 #include <umockdev.h>
 
 #include <cstdint>
-#include <memory>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "emulators/lab/tty_calls.hpp"
 
 namespace armjig::testing {
 
@@ -48,7 +50,11 @@ class UsbBench {
 
  private:
   UMockdevTestbed* bed_;
-  UMockdevIoctlBase* ioctls_;
+  struct Port {
+    lab::SerialLines lines;
+    lab::GObjectRef<UMockdevIoctlBase> calls;
+  };
+  std::map<std::string, Port> ports_;  ///< by node
 };
 
 }  // namespace armjig::testing

@@ -147,9 +147,11 @@ Outcome<Played> play_to(std::unique_ptr<HostedServer> device, const Records& rec
 /// Over an adapter that does whole transactions, as the kernel shows it.
 Outcome<Played> play_to(std::unique_ptr<HostedBus> device, const Records& records,
                         const PlayHow& how) {
-  auto adapter = I2cAdapter::open(std::move(device));
-  if (!adapter) return tl::unexpected{adapter.error()};
-  Touched<BusOnAdapter> touched{(*adapter)->host(), **adapter};
+  auto host = Host::open(std::move(device), {});
+  if (!host) return tl::unexpected{host.error()};
+  RunningHost running{*std::move(host)};
+  I2cAdapter adapter{running.host()};
+  Touched<BusOnAdapter> touched{running.host(), adapter};
   return play_host(touched, records, how);
 }
 

@@ -73,7 +73,7 @@ constexpr Room kRooms[] = {
      "harness/core harness/wire harness/link harness/timing emulators/memory emulators/usb"},
     {"emulators/shadow",
      "harness/core harness/wire harness/capture harness/compare emulators/memory"},
-    {"emulators/lab", "harness/core harness/link emulators/memory emulators/host"},
+    {"emulators/lab", "harness/core harness/link emulators/memory emulators/usb emulators/host"},
     {"conformance/kinovazed/mutants.cpp", "conformance emulators/kinovazed"},
     {"conformance/morap/mutants.cpp", "conformance emulators/morap"},
     {"conformance/morap/target.cpp", "conformance harness/config emulators/morap"},

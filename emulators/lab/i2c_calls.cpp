@@ -1,70 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "emulators/lab/virtual_i2c.hpp"
+#include "emulators/lab/i2c_calls.hpp"
 
-#include <fmt/core.h>
 #include <linux/i2c-dev.h>
 #include <linux/i2c.h>
-#include <sys/stat.h>
-#include <umockdev.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <span>
 #include <utility>
+#include <vector>
 
-#include "emulators/lab/i2c_adapter.hpp"
-
-namespace armjig {
-
-struct GObjectUnref {
-  void operator()(void* object) const noexcept { g_object_unref(object); }
-};
-template <class T>
-using GObjectRef = std::unique_ptr<T, GObjectUnref>;
-
+namespace armjig::lab {
 namespace {
-
-/// A piece of the memory of the program whose call is answered.
-class ClientMemory {
- public:
-  /// Takes over the reference.
-  explicit ClientMemory(UMockdevIoctlData* data) noexcept : data_{data} {}
-
-  [[nodiscard]] explicit operator bool() const noexcept { return data_ != nullptr; }
-  [[nodiscard]] std::span<const std::byte> bytes() const noexcept {
-    return {reinterpret_cast<const std::byte*>(data_->data),
-            static_cast<std::size_t>(data_->data_len)};
-  }
-  /// Requires at least as many bytes.
-  template <class T>
-  [[nodiscard]] T as(std::size_t offset = 0) const noexcept {
-    T value;
-    std::memcpy(&value, bytes().data() + offset, sizeof value);
-    return value;
-  }
-  void set(Bytes bytes) {
-    std::vector<std::byte> copy{bytes.begin(), bytes.end()};
-    umockdev_ioctl_data_update(data_.get(), 0, reinterpret_cast<guint8*>(copy.data()),
-                               static_cast<gint>(copy.size()));
-  }
-  /// What the pointer at `offset` leads to; none if it leads nowhere.
-  [[nodiscard]] ClientMemory behind(std::size_t offset, std::size_t size) const {
-    GError* error = nullptr;
-    auto* found = umockdev_ioctl_data_resolve(data_.get(), offset, size, &error);
-    g_clear_error(&error);
-    return ClientMemory{found};
-  }
-
- private:
-  GObjectRef<UMockdevIoctlData> data_;
-};
 
 /// A call of a program, from the beginning to its answer.
 class Call {
@@ -236,92 +187,14 @@ gboolean on_read(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpoin
   return TRUE;
 }
 
-std::string root_of(UMockdevTestbed* bed) {
-  gchar* text = umockdev_testbed_get_root_dir(bed);
-  std::string root = text;
-  g_free(text);
-  return root;
-}
-
-void add_to_sysfs(UMockdevTestbed* bed, const std::string& name, const std::string& path) {
-  std::array<const char*, 3> attributes{"name", "armjig emulated bus", nullptr};
-  std::array<const char*, 3> properties{"DEVNAME", path.c_str(), nullptr};
-  g_free(umockdev_testbed_add_devicev(bed, "i2c-dev", name.c_str(), nullptr,
-                                      const_cast<gchar**>(attributes.data()),
-                                      const_cast<gchar**>(properties.data())));
-}
-
-/// A file that passes for a character device: umockdev takes the sticky bit as its sign.
-bool make_node(const std::string& file) {
-  std::error_code error;
-  std::filesystem::create_directories(std::filesystem::path{file}.parent_path(), error);
-  if (!std::ofstream{file}) return false;
-  return ::chmod(file.c_str(), S_ISVTX | 0666) == 0;
-}
-
 }  // namespace
 
-class VirtualI2c::Bed {
- public:
-  Bed(std::unique_ptr<I2cAdapter> adapter, int number)
-      : adapter_{std::move(adapter)},
-        path_{fmt::format("/dev/i2c-{}", number)},
-        bed_{umockdev_testbed_new()},
-        calls_{umockdev_ioctl_base_new()} {
-    g_signal_connect(calls_.get(), "handle-ioctl", G_CALLBACK(on_ioctl), adapter_.get());
-    g_signal_connect(calls_.get(), "handle-read", G_CALLBACK(on_read), adapter_.get());
-    g_signal_connect(calls_.get(), "handle-write", G_CALLBACK(on_write), adapter_.get());
-  }
-  Bed(const Bed&) = delete;
-  Bed& operator=(const Bed&) = delete;
-  ~Bed() { umockdev_testbed_detach_ioctl(bed_.get(), path_.c_str(), nullptr); }
-
-  Outcome<void> plug_in() {
-    add_to_sysfs(bed_.get(), path_.substr(path_.rfind('/') + 1), path_);
-    GError* error = nullptr;
-    if (make_node(root() + path_) &&
-        umockdev_testbed_attach_ioctl(bed_.get(), path_.c_str(), calls_.get(), &error) != 0) {
-      return {};
-    }
-    const std::string why = error == nullptr ? "the test bed is not writable" : error->message;
-    g_clear_error(&error);
-    return problem(ErrorCode::kSystem, path_, why);
-  }
-
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] std::string root() const { return root_of(bed_.get()); }
-  [[nodiscard]] Host& host() noexcept { return adapter_->host(); }
-
- private:
-  std::unique_ptr<I2cAdapter> adapter_;
-  std::string path_;
-  GObjectRef<UMockdevTestbed> bed_;
-  GObjectRef<UMockdevIoctlBase> calls_;
-};
-
-Outcome<VirtualI2c> VirtualI2c::open(std::unique_ptr<HostedBus> bus, int number,
-                                     HostOptions options) {
-  auto adapter = I2cAdapter::open(std::move(bus), std::move(options));
-  if (!adapter) return tl::unexpected{adapter.error()};
-  auto bed = std::make_unique<Bed>(*std::move(adapter), number);
-  if (const auto plugged = bed->plug_in(); !plugged) return tl::unexpected{plugged.error()};
-  return VirtualI2c{std::move(bed)};
+GObjectRef<UMockdevIoctlBase> answer_i2c_calls(I2cAdapter& adapter) {
+  GObjectRef<UMockdevIoctlBase> calls{umockdev_ioctl_base_new()};
+  g_signal_connect(calls.get(), "handle-ioctl", G_CALLBACK(on_ioctl), &adapter);
+  g_signal_connect(calls.get(), "handle-read", G_CALLBACK(on_read), &adapter);
+  g_signal_connect(calls.get(), "handle-write", G_CALLBACK(on_write), &adapter);
+  return calls;
 }
 
-VirtualI2c::VirtualI2c(std::unique_ptr<Bed> bed) noexcept : bed_{std::move(bed)} {}
-VirtualI2c::VirtualI2c(VirtualI2c&&) noexcept = default;
-VirtualI2c& VirtualI2c::operator=(VirtualI2c&&) noexcept = default;
-VirtualI2c::~VirtualI2c() = default;
-
-const std::string& VirtualI2c::path() const noexcept { return bed_->path(); }
-Host& VirtualI2c::host() noexcept { return bed_->host(); }
-
-std::vector<std::string> VirtualI2c::environment() const {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody changes the environment meanwhile
-  const char* others = std::getenv("LD_PRELOAD");
-  std::string preload = "LD_PRELOAD=libumockdev-preload.so.0";
-  if (others != nullptr && *others != '\0') preload += std::string{":"} + others;
-  return {"UMOCKDEV_DIR=" + bed_->root(), std::move(preload)};
-}
-
-}  // namespace armjig
+}  // namespace armjig::lab
