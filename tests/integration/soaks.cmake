@@ -38,6 +38,12 @@ target_link_libraries(latency_soak PRIVATE integration_support fmt::fmt)
 add_test(NAME soak.latency COMMAND latency_soak)
 set_tests_properties(soak.latency PROPERTIES LABELS soak TIMEOUT 600 RUN_SERIAL TRUE)
 
+# Some minutes: what hosting 300 boards costs, and a command, beside bare echoes.
+add_executable(boards_soak boards_soak.cpp)
+target_link_libraries(boards_soak PRIVATE integration_support fmt::fmt)
+add_test(NAME soak.boards COMMAND boards_soak)
+set_tests_properties(soak.boards PROPERTIES LABELS soak TIMEOUT 1800 RUN_SERIAL TRUE)
+
 # A minute: what the tap costs, beside a relay that does nothing but poll, read and write.
 add_executable(tap_soak tap_soak.cpp)
 target_link_libraries(tap_soak PRIVATE integration_support fmt::fmt util)
