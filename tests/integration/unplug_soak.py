@@ -78,6 +78,8 @@ class Relay:
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.target = f"{target.partition(':')[0]}:127.0.0.1:{self.listener.getsockname()[1]}"
         self.sockets = []
+        self.is_broken = False
+        self.guard = threading.Lock()
         threading.Thread(target=self.accept, daemon=True).start()
 
     def accept(self):
@@ -85,7 +87,11 @@ class Relay:
             while True:
                 client = self.listener.accept()[0]
                 other = socket.create_connection(("127.0.0.1", self.port))
-                self.sockets += [client, other]
+                with self.guard:
+                    self.sockets += [client, other]
+                    if self.is_broken:
+                        self.break_all()
+                        return
                 for one, two in ((client, other), (other, client)):
                     one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                     threading.Thread(target=self.pass_on, args=(one, two), daemon=True).start()
@@ -103,6 +109,11 @@ class Relay:
     def reset(self):
         self.listener.shutdown(socket.SHUT_RDWR)
         self.listener.close()
+        with self.guard:  # one that is accepted at this moment is reset, too
+            self.is_broken = True
+            self.break_all()
+
+    def break_all(self):
         for one in self.sockets:
             try:
                 one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
