@@ -120,6 +120,10 @@ Outcome<std::unique_ptr<BusPort>> open_i2c_dev(const std::string& path) {
   if (::ioctl(descriptor.value(), I2C_FUNCS, &functions) < 0) {
     return problem(ErrorCode::kUnsupported, path, "it is not an I2C bus; write i2c:/dev/i2c-N");
   }
+  if (functions == 0) {  // as drivers say it whose adapter does not answer any more
+    return problem(ErrorCode::kDisconnected, path,
+                   "the adapter does not say what it can do: was it unplugged just now?");
+  }
   if ((functions & I2C_FUNC_I2C) == 0) {
     return problem(ErrorCode::kUnsupported, path,
                    "the adapter knows SMBus commands only, and no plain I2C transactions");
