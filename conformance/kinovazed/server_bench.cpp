@@ -512,7 +512,7 @@ void ServerBench::bring_to(std::size_t start) {
   if (std::exchange(is_spoiled_, false) || start_ == kFresh) restart();
   auto& one = client();
   if (!one.is_connected || one.has_ended) {
-    if (!connect_again(kRestartTime)) return fail("a connection", "it is refused");
+    if (!connect_again(kRestartTime)) return fail_by_silence("a connection", "it is refused");
   }
   if (start_ == kFresh || is_over()) return;
   if (const auto beat = beat_in_use()) {
