@@ -112,6 +112,10 @@ add_test(NAME soak.kernel_round_trip COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/
                                              roundtrip)
 set_tests_properties(soak.kernel_round_trip PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)
 
+# Half a minute: a board in a labgrid lab. Needs labgrid, of PyPI.
+add_test(NAME soak.labgrid COMMAND ${PROJECT_SOURCE_DIR}/examples/labgrid/run $<TARGET_FILE:armjig>)
+set_tests_properties(soak.labgrid PROPERTIES LABELS soak TIMEOUT 300 SKIP_RETURN_CODE 77)
+
 # Some ten minutes: campaigns find ten defects for each device that its suite does not see.
 add_test(NAME soak.rare_defects
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/rare_defects_soak.py
