@@ -27,7 +27,7 @@ import time
 ARMJIG = sys.argv[1]
 AT_ONCE = 4
 MOMENTS = 0.4  # seconds from the start of the program
-PATIENCE = 45  # seconds; who takes longer hangs. A server may be started again: cases wait for it twice, for 15 s
+PATIENCE = 45  # seconds; who takes longer hangs. Cases wait 15 s for a server that may be started again
 MOST_GROWTH = 1024  # KiB
 
 STREAM = [["latency", "parol6", "--seconds", "100"], ["watch", "parol6", "--json"], ["console", "parol6"],
