@@ -141,10 +141,20 @@ bool ServerBench::connect_again(Duration patience) {
   for (;;) {
     const auto connected = one.port->connect(one.port->now() + answer_time());
     one.is_connected = connected.has_value();
-    if (connected) return true;
+    if (connected) {
+      is_missed_ = false;
+      return true;
+    }
     if (one.port->now() >= deadline) return false;
     port().pause(100ms);
   }
+}
+
+/// One that was waited for in vain is not waited for again.
+bool ServerBench::find_again() {
+  const bool is_found = connect_again(is_missed_ ? Duration{} : kRestartTime);
+  is_missed_ = !is_found;
+  return is_found;
 }
 
 void ServerBench::connect() {
@@ -458,7 +468,7 @@ bool ServerBench::is_alive() {
   drop_others();
   if (std::exchange(is_spoiled_, false)) restart();
   const auto& one = client();
-  if ((!one.is_connected || one.has_ended) && !connect_again(kRestartTime)) return false;
+  if ((!one.is_connected || one.has_ended) && !find_again()) return false;
   if (const auto beat = beat_in_use()) {
     if (!beat->raw.empty()) return true;
   } else if (stop_all()) {
@@ -512,7 +522,7 @@ void ServerBench::bring_to(std::size_t start) {
   if (std::exchange(is_spoiled_, false) || start_ == kFresh) restart();
   auto& one = client();
   if (!one.is_connected || one.has_ended) {
-    if (!connect_again(kRestartTime)) return fail("a connection", "it is refused");
+    if (!find_again()) return fail_by_silence("a connection", "it is refused");
   }
   if (start_ == kFresh || is_over()) return;
   if (const auto beat = beat_in_use()) {

@@ -167,6 +167,7 @@ class ServerBench final : public PortBench<SessionSource> {
   [[nodiscard]] Client& client();
   [[nodiscard]] SessionPort& session() { return *client().port; }
   [[nodiscard]] bool connect_again(Duration patience);
+  [[nodiscard]] bool find_again();
   void read_until(Instant deadline);
   void take_line(std::string_view line);
   [[nodiscard]] std::optional<Heard> next_word(Duration within);
@@ -192,6 +193,7 @@ class ServerBench final : public PortBench<SessionSource> {
   std::optional<Instant> mode_said_;
   Start start_ = kStopped;
   bool is_spoiled_ = false;
+  bool is_missed_ = false;                                 ///< the server did not come back
   std::map<std::string, std::int64_t, std::less<>> left_;  ///< inputs to put back after the case
   MayStop may_stop_;
   bool is_seen_stopped_ = false;  ///< since it was connected

@@ -39,11 +39,22 @@ constexpr auto kShortWait = 50us;
 
 }  // namespace
 
+class HostThread {
+ public:
+  [[nodiscard]] boost::asio::io_context& context() noexcept { return context_; }
+
+ private:
+  boost::asio::io_context context_{1};
+};
+
+std::shared_ptr<HostThread> make_host_thread() { return std::make_shared<HostThread>(); }
+
 /// The device, its clock and what is in front of it on one io_context.
 class Host::LoopOnAsio final : public Loop {
  public:
   LoopOnAsio(AnyHosted device, HostOptions options)
-      : options_{std::move(options)},
+      : thread_{options.thread ? options.thread : make_host_thread()},
+        options_{std::move(options)},
         hosted_{std::move(device)},
         device_{std::visit([](auto& kind) -> HostedDevice& { return *kind; }, hosted_)},
         front_{std::visit([this](auto& kind) { return make_front(*this, *kind); }, hosted_)},
@@ -58,6 +69,7 @@ class Host::LoopOnAsio final : public Loop {
   }
 
   ~LoopOnAsio() override {
+    context_.stop();                         // what is posted there may be for this one
     if (waker_.is_open()) waker_.release();  // the device closes it
   }
 
@@ -193,7 +205,8 @@ class Host::LoopOnAsio final : public Loop {
     });
   }
 
-  boost::asio::io_context context_{1};
+  std::shared_ptr<HostThread> thread_;
+  boost::asio::io_context& context_ = thread_->context();
   HostOptions options_;
   AnyHosted hosted_;
   HostedDevice& device_;  ///< the one in `hosted_`

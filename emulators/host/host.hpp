@@ -34,6 +34,12 @@ struct UsbOptions {
   UsbSocket place;
 };
 
+/// Hosts that share one are served by one thread: `run` and `stop` of one are those of all. Many
+/// devices cost far less on one than on a thread each. As soon as the first host is destroyed, or
+/// one cannot be opened, none of the others runs any more.
+class HostThread;
+[[nodiscard]] std::shared_ptr<HostThread> make_host_thread();
+
 /// Where and how a device is hosted. A stream has at least one link, a server TCP and nothing else,
 /// a bus USB or nothing (`Host::with_bus`).
 struct HostOptions {
@@ -43,6 +49,7 @@ struct HostOptions {
   std::vector<UsbOptions>
       usb{};         ///< each is a device of its own; the inputs at their cables do to all
   double speed = 1;  ///< virtual over wall time, `PacedClock::kSlowest` to `kFastest`
+  std::shared_ptr<HostThread> thread{};  ///< shared with other hosts; none: one of its own
   std::function<void(std::string_view line)> log = [](std::string_view /*line*/) {};
 };
 

@@ -58,7 +58,8 @@ class BusPort : public Endpoint {
 
   /// A transaction: its messages with repeated starts between, and a stop. Errors: `kBusy`
   /// (arbitration lost, a line held down), `kTimedOut` (a device holds the clock), `kDisconnected`
-  /// (the adapter is gone), `kBadValue` (more or longer messages than the bus can do).
+  /// (the adapter is gone), `kNotFound` (it is away and may come back), `kBadValue` (more or longer
+  /// messages than the bus can do).
   [[nodiscard]] virtual Result<Transfer> transfer(std::span<const BusMessage> messages);
 
   /// Start condition (a repeated one inside a transaction), then the address. `kNack`: nobody is

@@ -5,6 +5,7 @@
 #include <linux/i2c-dev.h>
 #include <linux/i2c.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <cstdint>
@@ -29,6 +30,13 @@ i2c_msg to_kernel(const BusMessage& message) {
   out.buf = reinterpret_cast<std::uint8_t*>(is_read ? message.read.data()
                                                     : const_cast<std::byte*>(message.write.data()));
   return out;
+}
+
+/// Whether the bus behind a file is gone. Many drivers of adapters that were pulled out say no more
+/// than that nobody acknowledged, but the kernel has taken the bus's node away by then.
+bool is_gone(const Descriptor& descriptor) {
+  struct stat node{};
+  return ::fstat(descriptor.value(), &node) == 0 && node.st_nlink == 0;
 }
 
 /// The kernel's i2c/fault-codes, as far as drivers keep to them.
@@ -73,7 +81,11 @@ class I2cDev final : public RealBus {
     for (const auto& message : messages) parts.push_back(to_kernel(message));
     i2c_rdwr_ioctl_data request{parts.data(), static_cast<std::uint32_t>(parts.size())};
     const int done = ::ioctl(descriptor_.value(), I2C_RDWR, &request);
-    if (done < 0) return refusal_of(errno);
+    if (done < 0) {
+      const int error_number = errno;
+      if (is_gone(descriptor_)) return fail(ErrorCode::kDisconnected, error_number);
+      return refusal_of(error_number);
+    }
     // A driver that stops early without an error has had a byte refused.
     return static_cast<std::size_t>(done) == messages.size() ? Transfer::kDone
                                                              : Transfer::kByteRefused;
@@ -107,6 +119,10 @@ Outcome<std::unique_ptr<BusPort>> open_i2c_dev(const std::string& path) {
   unsigned long functions = 0;
   if (::ioctl(descriptor.value(), I2C_FUNCS, &functions) < 0) {
     return problem(ErrorCode::kUnsupported, path, "it is not an I2C bus; write i2c:/dev/i2c-N");
+  }
+  if (functions == 0) {  // as drivers say it whose adapter does not answer any more
+    return problem(ErrorCode::kDisconnected, path,
+                   "the adapter does not say what it can do: was it unplugged just now?");
   }
   if ((functions & I2C_FUNC_I2C) == 0) {
     return problem(ErrorCode::kUnsupported, path,

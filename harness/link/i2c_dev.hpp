@@ -13,7 +13,7 @@ namespace armjig {
 /// `EREMOTEIO` are taken for the address, `EIO` for a byte.
 ///
 /// Problems: `kNotFound` (no such bus), `kNoPermission`, `kUnsupported` (not an I2C bus, or one
-/// that cannot do plain transactions).
+/// that cannot do plain transactions), `kDisconnected` (its adapter is gone, or goes).
 [[nodiscard]] Outcome<std::unique_ptr<BusPort>> open_i2c_dev(const std::string& path);
 
 }  // namespace armjig

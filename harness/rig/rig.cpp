@@ -7,7 +7,7 @@
 #include "harness/link/impaired_bus.hpp"
 #include "harness/link/impaired_session.hpp"
 #include "harness/link/impaired_stream.hpp"
-#include "harness/link/reopening_stream.hpp"
+#include "harness/link/reopening_ports.hpp"
 #include "harness/link/session_stream.hpp"
 #include "harness/rig/logged_ports.hpp"
 
@@ -37,19 +37,28 @@ std::optional<Problem> problem_of_reopening(const RigOptions& options) {
 // Each layer for each kind of port.
 
 template <class Port>
-Outcome<std::unique_ptr<Port>> open_port(const Wiring<Port>& wiring, const RigOptions& options) {
+Outcome<std::unique_ptr<Port>> open_once(const Wiring<Port>& wiring, const RigOptions& options) {
   if (options.target.is_emulated()) return wiring.open_emulated(options.target);
   if (wiring.open_real != nullptr) return wiring.open_real(options.target, wiring.line);
   return problem(ErrorCode::kUnsupported, options.target.text,
                  "this program has no real links: write emulated:");
 }
 
-Outcome<std::unique_ptr<StreamPort>> open_port(const Wiring<StreamPort>& wiring,
-                                               const RigOptions& options) {
-  auto port = open_port<StreamPort>(wiring, options);
-  if (!port || !reopens(options)) return port;
-  return std::make_unique<ReopeningStream>(
-      *std::move(port), [wiring, options] { return open_port<StreamPort>(wiring, options); });
+template <class Port>
+using ReopeningPort =
+    std::conditional_t<std::is_same_v<Port, StreamPort>, ReopeningStream, ReopeningBus>;
+
+/// Connections to a server are begun again by `connect`.
+template <class Port>
+Outcome<std::unique_ptr<Port>> open_port(const Wiring<Port>& wiring, const RigOptions& options) {
+  auto port = open_once(wiring, options);
+  if constexpr (!std::is_same_v<Port, SessionSource>) {
+    if (port && reopens(options)) {
+      return std::make_unique<ReopeningPort<Port>>(
+          *std::move(port), [wiring, options] { return open_once(wiring, options); });
+    }
+  }
+  return port;
 }
 
 template <class Port>

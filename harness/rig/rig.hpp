@@ -25,7 +25,7 @@ namespace armjig {
 /// What to do when the target disappears.
 enum class WhenGone : std::uint8_t {
   kFail,
-  kReopen,  ///< wait until it is back; only for looking at a real device on a stream
+  kReopen,  ///< wait until it is back; only for looking at a real device
 };
 
 /// How a target is opened.

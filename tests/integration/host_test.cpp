@@ -13,6 +13,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "emulators/demo/demo.hpp"
 #include "emulators/host/outbox.hpp"
@@ -124,6 +125,29 @@ TEST(Host, AnswersTheLinkThatAskedLast) {
   EXPECT_EQ(ask(*pty), kReady);
   EXPECT_EQ(ask(*tcp), kReady);
   EXPECT_EQ(ask(*pty), kReady);
+}
+
+TEST(Host, SharesAThreadWithOthers) {
+  const auto shared = make_host_thread();
+  std::vector<Host> hosts;
+  for (int i = 0; i < 3; ++i) {
+    hosts.push_back(Host::open(demo_device(), {.pty = PtyOptions{}, .thread = shared}).value());
+  }
+  std::thread thread{[&hosts] { hosts.front().run(); }};
+  for (const auto& host : hosts) {
+    EXPECT_EQ(ask(*open_or_die(open_pty(host.targets().front().substr(4)))), kReady);
+  }
+  hosts.back().stop();  // ends all of them, or this would not come to its end
+  thread.join();
+}
+
+TEST(Host, LeavesNothingToBeDoneForOneThatIsGone) {
+  const auto shared = make_host_thread();
+  auto stays = Host::open(demo_device(), {.pty = PtyOptions{}, .thread = shared}).value();
+  {
+    const auto gone = Host::open(demo_device(), {.pty = PtyOptions{}, .thread = shared}).value();
+  }
+  stays.run();  // at once over
 }
 
 TEST(Host, AnswersWhenVirtualTimeHasComeNotBefore) {

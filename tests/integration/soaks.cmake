@@ -26,6 +26,12 @@ target_link_libraries(alterations_soak PRIVATE armjig_replay armjig_harness fmt:
 add_test(NAME soak.alterations COMMAND alterations_soak ${PROJECT_SOURCE_DIR}/captures)
 set_tests_properties(soak.alterations PROPERTIES LABELS soak TIMEOUT 3600)
 
+# A quarter of an hour: every link breaks a thousand times, at random moments, while a program talks over it. Those of
+# a real kernel are below.
+add_test(NAME soak.breaks COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/unplug_soak.py
+                                  $<TARGET_FILE:armjig>)
+set_tests_properties(soak.breaks PROPERTIES LABELS soak TIMEOUT 7200)
+
 # Some ten minutes: every recording to a hosted emulated device, in real time over real links.
 add_executable(hosted_replay_soak hosted_replay_soak.cpp)
 target_link_libraries(hosted_replay_soak PRIVATE integration_support fmt::fmt)
@@ -37,6 +43,12 @@ add_executable(latency_soak latency_soak.cpp)
 target_link_libraries(latency_soak PRIVATE integration_support fmt::fmt)
 add_test(NAME soak.latency COMMAND latency_soak)
 set_tests_properties(soak.latency PROPERTIES LABELS soak TIMEOUT 600 RUN_SERIAL TRUE)
+
+# Some minutes: what hosting 300 boards costs, and a command, beside bare echoes.
+add_executable(boards_soak boards_soak.cpp)
+target_link_libraries(boards_soak PRIVATE integration_support fmt::fmt)
+add_test(NAME soak.boards COMMAND boards_soak)
+set_tests_properties(soak.boards PROPERTIES LABELS soak TIMEOUT 1800 RUN_SERIAL TRUE)
 
 # A minute: what the tap costs, beside a relay that does nothing but poll, read and write.
 add_executable(tap_soak tap_soak.cpp)
@@ -76,20 +88,33 @@ add_test(NAME soak.trace
                  ${PROJECT_SOURCE_DIR}/captures/parol6/random_30s_a.jsonl)
 set_tests_properties(soak.trace PROPERTIES LABELS soak TIMEOUT 7200)
 
-# In a guest with a kernel of its own, with its driver and without: a cable that is pulled out 200 times, and
+# In a guest with a kernel of its own, with its driver and without: a cable that is pulled out 1,000 times, and
 # a program that is killed while it moves the arm. Needs what scripts/bootstrap --dev installs.
-foreach(target serial:/dev/ttyACM0 usb:0483:5740)
+foreach(target serial:/dev/ttyACM0 usb:0483:5740 i2c: i2c-tiny-usb:)
   string(REGEX REPLACE ":.*" "" link ${target})
   add_test(NAME soak.unplug.${link} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
-                                            unplug 200 ${target})
+                                            unplug 1000 ${target})
+  set_tests_properties(soak.unplug.${link} PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)
+endforeach()
+foreach(target serial:/dev/ttyACM0 usb:0483:5740)
+  string(REGEX REPLACE ":.*" "" link ${target})
   add_test(NAME soak.killed.${link} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
                                             killed ${target})
-  set_tests_properties(soak.unplug.${link} soak.killed.${link} PROPERTIES LABELS soak TIMEOUT 7200
-                                                                          SKIP_RETURN_CODE 77)
+  set_tests_properties(soak.killed.${link} PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)
 endforeach()
+add_test(NAME soak.kernel_verdicts COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR} all)
+set_tests_properties(soak.kernel_verdicts PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)
+foreach(mode reconnect others)
+  add_test(NAME soak.kernel_${mode} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR} ${mode})
+endforeach()
+set_tests_properties(soak.kernel_reconnect soak.kernel_others PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)
 add_test(NAME soak.kernel_round_trip COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
                                              roundtrip)
 set_tests_properties(soak.kernel_round_trip PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)
+
+# Half a minute: a board in a labgrid lab. Needs labgrid, of PyPI.
+add_test(NAME soak.labgrid COMMAND ${PROJECT_SOURCE_DIR}/examples/labgrid/run $<TARGET_FILE:armjig>)
+set_tests_properties(soak.labgrid PROPERTIES LABELS soak TIMEOUT 300 SKIP_RETURN_CODE 77)
 
 # Some ten minutes: campaigns find ten defects for each device that its suite does not see.
 add_test(NAME soak.rare_defects

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
@@ -176,6 +177,35 @@ TEST_F(UsbAdapterBench, AScanFindsTheNodeBehindIt) {
   Program program{{"i2c", "scan", "--target", "i2c-tiny-usb:"}};
   EXPECT_EQ(program.read_line(), "0x12  MORAP node 2");
   EXPECT_EQ(program.wait(), 0) << program.read_errors();
+}
+
+/// The next line with all of these words; what there is when the program says no more.
+std::string line_with(Program& program, const std::string& words) {
+  auto line = program.read_line();
+  while (!line.empty() && line.find(words) == std::string::npos) line = program.read_line();
+  return line;
+}
+
+TEST_F(UsbAdapterBench, AWatchGoesOnWhenItIsBack) {
+  auto adapter = std::make_unique<Plugged>(bench_, kAdapter);
+  Program program{{"watch", "morap", "--target", "i2c-tiny-usb:", "--reconnect", "--json"}};
+  EXPECT_THAT(line_with(program, "angle_rad"), HasSubstr("armjig.morap-node/1"));
+  adapter->device().pull_out();
+  adapter.reset();
+  EXPECT_THAT(line_with(program, "error"), HasSubstr("the bus is away"));
+  adapter = std::make_unique<Plugged>(bench_, kAdapter);
+  EXPECT_THAT(line_with(program, "angle_rad"), HasSubstr("armjig.morap-node/1"));
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(), 0) << program.read_errors();
+}
+
+TEST_F(UsbAdapterBench, AWatchEndsInOneLineWhenItIsPulledOut) {
+  Plugged adapter{bench_, kAdapter};
+  Program program{{"watch", "morap", "--target", "i2c-tiny-usb:", "--json"}};
+  EXPECT_THAT(line_with(program, "angle_rad"), HasSubstr("armjig.morap-node/1"));
+  adapter.device().pull_out();
+  EXPECT_EQ(program.wait(), 3);
+  EXPECT_THAT(program.read_errors(), HasSubstr("i2c-tiny-usb:"));
 }
 
 TEST_F(UsbAdapterBench, IsNotFoundWhereNoneIsPluggedIn) {

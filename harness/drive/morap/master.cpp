@@ -12,6 +12,8 @@ BusCode code_of(Error error, BusCode collision) noexcept {
       return BusCode::kTimedOut;
     case ErrorCode::kDisconnected:
       return BusCode::kGone;
+    case ErrorCode::kNotFound:
+      return BusCode::kAway;
     case ErrorCode::kForbidden:
       return BusCode::kForbidden;
     default:
@@ -39,6 +41,8 @@ std::string_view describe(BusCode code) noexcept {
       return "the bus is gone";
     case BusCode::kForbidden:
       return "not allowed by the guard";
+    case BusCode::kAway:
+      return "the bus is away";
   }
   return {};
 }
@@ -46,6 +50,7 @@ std::string_view describe(BusCode code) noexcept {
 ErrorCode error_of(BusCode code) noexcept {
   switch (code) {
     case BusCode::kNoSuchAddress:
+    case BusCode::kAway:
       return ErrorCode::kNotFound;
     case BusCode::kTimedOut:
       return ErrorCode::kTimedOut;

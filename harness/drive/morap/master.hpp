@@ -19,6 +19,7 @@ enum class BusCode : std::uint8_t {
   kTimedOut = 6,        ///< a device held the clock; the vendor's library hangs here
   kGone = 7,            ///< the adapter was pulled out
   kForbidden = 8,       ///< the guard before a real device refused it; nothing was sent
+  kAway = 9,            ///< the adapter was pulled out, and is waited for
 };
 
 /// One sentence without a full stop.

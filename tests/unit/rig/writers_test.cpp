@@ -174,7 +174,7 @@ const std::vector<Step>& steps() {
         {"harness/link/i2c_tiny_usb.cpp", "makes them"},
         {"harness/link/impaired_bus.cpp", "passes on what it is given"},
         {"harness/link/impaired_stream.cpp", "passes on what it is given"},
-        {"harness/link/reopening_stream.cpp", "passes on what it is given"},
+        {"harness/link/reopening_ports.cpp", "passes on what it is given"},
         {"harness/rig/guarded_ports.cpp", "is the guard"},
         {"harness/rig/guarded_ports.hpp", "is the guard"},
         {"harness/rig/logged_ports.cpp", "passes on what it is given"},

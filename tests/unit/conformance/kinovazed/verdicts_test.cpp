@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -139,6 +141,64 @@ TEST(ServerVerdicts, WordsThatAreTooShortAreTheFinding) {
 
 TEST(ServerVerdicts, AnUnchangedServerPasses) {
   EXPECT_EQ(conclusion_of(run(unchanged)), Conclusion::kPassed);
+}
+
+/// A connection to a server that is switched off at some time.
+class BrokenSession final : public SessionAround {
+ public:
+  BrokenSession(std::unique_ptr<SessionPort> port, Instant end)
+      : PortAround{std::move(port)}, end_{end} {}
+
+  Result<void> connect(Instant deadline) override {
+    if (is_off()) return fail(ErrorCode::kRefused);
+    return inner().connect(deadline);
+  }
+  Result<void> send(Bytes segment) override {
+    if (is_off()) return fail(ErrorCode::kDisconnected);
+    return inner().send(segment);
+  }
+  Result<Received> receive(std::span<std::byte> into, Instant deadline) override {
+    if (is_off()) return Received{Arrival::kReset, 0};
+    return inner().receive(into, std::min(deadline, std::max(end_, now())));
+  }
+  void half_close() override { inner().half_close(); }
+  void close() override { inner().close(); }
+  void reset() override { inner().reset(); }
+
+ private:
+  [[nodiscard]] bool is_off() const { return now() >= end_; }
+
+  Instant end_;
+};
+
+class BrokenServer final : public SourceAround {
+ public:
+  explicit BrokenServer(Duration life)
+      : SourceAround{test::wiring<cli::OnServer>("kinovazed")
+                         .open_emulated(parse_target("emulated:").value())
+                         .value(),
+                     [this, life](std::unique_ptr<SessionPort> port) {
+                       if (!end_) end_ = port->now() + life;
+                       return std::make_unique<BrokenSession>(std::move(port), *end_);
+                     }} {}
+
+ private:
+  std::optional<Instant> end_;
+};
+
+TEST(ServerVerdicts, AServerThatIsSwitchedOffIsNoFinding) {
+  using namespace std::chrono_literals;
+  for (const auto life : {1ms, 100ms, 500ms, 700ms, 900ms, 1000ms, 1300ms, 2000ms, 3000ms}) {
+    const auto bench = make_bench(Rig<SessionSource>{std::make_unique<BrokenServer>(life)},
+                                  {.permissions = Permissions::all()});
+    ASSERT_TRUE(bench);
+    RunOptions options;
+    options.selection.filter = "kinovazed.state.stopped";
+    options.permissions = Permissions::all();
+    const auto report = run_suite(suite(), **bench, options, [](const ReportRow&) {});
+    EXPECT_EQ(report.count(Verdict::kFail), 0U) << life.count() << " ms";
+    EXPECT_GE(report.count(Verdict::kError), 1U) << life.count() << " ms";
+  }
 }
 
 TEST(OnlyLooking, SendsNothingToAnArmThatIsInUse) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/link/reopening_stream.hpp"
+#include "harness/link/reopening_ports.hpp"
 
 #include <gtest/gtest.h>
 
@@ -88,6 +88,61 @@ TEST(ReopeningStream, OtherErrorsRemainErrors) {
                          [] { return port({{0}}); }};
   EXPECT_EQ(stream.write({}).error().code, ErrorCode::kTimedOut);
   EXPECT_EQ(stream.read({&read_byte, 1}, stream.now()).error().code, ErrorCode::kSystem);
+}
+
+/// A bus that answers the same again and again.
+class ScriptedBus final : public RealBus {
+ public:
+  explicit ScriptedBus(Result<Transfer> answer) : answer_{answer} {}
+  Result<Transfer> transfer(std::span<const BusMessage> /*messages*/) override { return answer_; }
+
+ private:
+  Result<Transfer> answer_;
+};
+
+std::unique_ptr<BusPort> bus(Result<Transfer> answer) {
+  return std::make_unique<ScriptedBus>(answer);
+}
+
+TEST(ReopeningBus, PassesOnWhatTheDevicesMakeOfIt) {
+  for (const auto answer : {Transfer::kDone, Transfer::kAddressRefused, Transfer::kByteRefused}) {
+    ReopeningBus port{bus(answer), [] { return bus(gone()); }};
+    EXPECT_EQ(port.transfer({}), answer);
+    EXPECT_EQ(port.reopened(), 0U);
+  }
+}
+
+TEST(ReopeningBus, WaitsForAnAdapterThatHasGone) {
+  ReopeningBus port{bus(gone()), [] { return bus(Transfer::kDone); }};
+  EXPECT_EQ(port.transfer({}).error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(port.transfer({}).error().code, ErrorCode::kNotFound)
+      << "opening takes time, and who sends has a deadline";
+  port.wait_until(port.now());
+  EXPECT_EQ(port.transfer({}), Transfer::kDone);
+  EXPECT_EQ(port.reopened(), 1U);
+}
+
+TEST(ReopeningBus, TriesTwiceASecondAndWaitsNoLongerThanItIsTold) {
+  int tries = 0;
+  ReopeningBus port{bus(gone()), [&tries]() -> Outcome<std::unique_ptr<BusPort>> {
+                      ++tries;
+                      return problem(ErrorCode::kNotFound, "adapter", "plug it in");
+                    }};
+  EXPECT_FALSE(port.transfer({}));
+  const auto deadline = port.now() + 20ms;
+  port.wait_until(deadline);
+  EXPECT_GE(port.now(), deadline);
+  for (int i = 0; i < 20; ++i) port.wait_until(port.now());
+  EXPECT_EQ(tries, 1);
+  EXPECT_EQ(port.transfer({}).error().code, ErrorCode::kNotFound);
+}
+
+TEST(ReopeningBus, OtherErrorsRemainErrors) {
+  ReopeningBus port{bus(fail(ErrorCode::kBusy)), [] { return bus(Transfer::kDone); }};
+  EXPECT_EQ(port.transfer({}).error().code, ErrorCode::kBusy);
+  port.wait_until(port.now());
+  EXPECT_EQ(port.transfer({}).error().code, ErrorCode::kBusy);
+  EXPECT_EQ(port.reopened(), 0U);
 }
 
 }  // namespace
