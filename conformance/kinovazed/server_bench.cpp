@@ -160,7 +160,7 @@ bool ServerBench::find_again() {
 void ServerBench::connect() {
   if (is_deaf()) return;
   remember("connects", "");
-  if (!connect_again(answer_time())) fail(behind("a connection"), "it is refused");
+  if (!connect_again(answer_time())) fail_by_silence(behind("a connection"), "it is refused");
 }
 
 void ServerBench::leave() {
@@ -195,7 +195,7 @@ void ServerBench::expect_quiet(Duration time) {
   const auto word = next_word(time);
   if (word) return fail_by("nothing but beats", *word);
   if (!is_deaf() && client().has_ended) {
-    fail(behind("an open connection"), "the end of the connection");
+    fail_by_silence(behind("an open connection"), "the end of the connection");
   }
 }
 

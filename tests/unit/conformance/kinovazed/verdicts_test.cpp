@@ -188,16 +188,18 @@ class BrokenServer final : public SourceAround {
 
 TEST(ServerVerdicts, AServerThatIsSwitchedOffIsNoFinding) {
   using namespace std::chrono_literals;
-  for (const auto life : {1ms, 100ms, 500ms, 700ms, 900ms, 1000ms, 1300ms, 2000ms, 3000ms}) {
+  for (Duration life = 1ms; life < 30s; life += 370ms) {
     const auto bench = make_bench(Rig<SessionSource>{std::make_unique<BrokenServer>(life)},
                                   {.permissions = Permissions::all()});
     ASSERT_TRUE(bench);
     RunOptions options;
-    options.selection.filter = "kinovazed.state.stopped";
+    options.selection.tier = Tier::kQuick;
     options.permissions = Permissions::all();
     const auto report = run_suite(suite(), **bench, options, [](const ReportRow&) {});
-    EXPECT_EQ(report.count(Verdict::kFail), 0U) << life.count() << " ms";
-    EXPECT_GE(report.count(Verdict::kError), 1U) << life.count() << " ms";
+    for (const auto& row : report.rows) {
+      EXPECT_NE(row.verdict, Verdict::kFail) << life.count() << " ns: " << to_text(row);
+    }
+    EXPECT_GE(report.count(Verdict::kError), 1U) << life.count() << " ns";
   }
 }
 
