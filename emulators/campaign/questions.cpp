@@ -17,6 +17,9 @@ using namespace std::chrono_literals;
 /// which two letters meet.
 constexpr Duration kLead = 1ms;
 
+/// Of what is done, beside what letters leave for an answer.
+constexpr Duration kMostLateness = 15ms;
+
 /// What came from the device, and ends of connections, in order of time.
 std::vector<Message> messages_heard(const RecordedMessages& said) {
   std::vector<Message> messages;
@@ -52,6 +55,18 @@ Questions::Questions(Stage& stage, const Learnable& machine, MakeDissector make_
       quiet_{quiet > Duration{} ? quiet : machine.quiet} {}
 
 Outcome<mealy::Said> Questions::ask(const mealy::Word& word) {
+  // Letters that came late came close together, and what was said to one may have been said in the
+  // time of the next. Nobody knows then, so the word is asked again.
+  constexpr int kTimes = 5;
+  for (int left = kTimes;; --left) {
+    const auto asked = script_of(word);
+    const auto heard = play(asked.script);
+    if (!heard) return tl::unexpected{heard.error()};
+    if (heard->lateness <= kMostLateness || left == 1) return answers_in(heard->target, asked);
+  }
+}
+
+Outcome<BothHeard> Questions::play(const Script& script) {
   if (!stage_.can_reset() && machine_.reset == nullptr) {
     return problem(ErrorCode::kUnsupported, "--learn",
                    "each word begins on a device that was started again: --restart says how");
@@ -59,11 +74,9 @@ Outcome<mealy::Said> Questions::ask(const mealy::Word& word) {
   if (stage_.can_reset() || !std::exchange(was_begun_, true)) {
     if (auto begun = stage_.reset(); !begun) return tl::unexpected{begun.error()};
   }
-  const auto asked = script_of(word);
-  const auto heard = stage_.play(asked.script);
-  if (!heard) return tl::unexpected{heard.error()};
-  if (heard->target.end) return tl::unexpected{*heard->target.end};
-  return answers_in(heard->target, asked);
+  auto heard = stage_.play(script);
+  if (heard && heard->target.end) return tl::unexpected{*heard->target.end};
+  return heard;
 }
 
 Questions::Asked Questions::script_of(const mealy::Word& word) const {

@@ -26,6 +26,8 @@ class Questions final : public mealy::Teacher {
     Script script;
     std::vector<Instant> begins;  ///< of each letter
   };
+  /// On a target that is where it begins.
+  [[nodiscard]] Outcome<BothHeard> play(const Script& script);
   [[nodiscard]] Asked script_of(const mealy::Word& word) const;
   [[nodiscard]] mealy::Said answers_in(const Heard& heard, const Asked& asked) const;
 

@@ -103,10 +103,26 @@ class FixedStage final : public Stage {
   Outcome<void> renew_models() override { return {}; }
   Outcome<BothHeard> play(const Script& script) override {
     played = script;
-    return BothHeard{};
+    ++times;
+    BothHeard heard;
+    if (times <= times_late) heard.lateness = std::chrono::seconds{1};
+    return heard;
   }
   Script played;
+  int times = 0;
+  int times_late = 0;
 };
+
+TEST(Questions, AskAgainWhatWasAskedLate) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  FixedStage stage;
+  stage.times_late = 2;
+  Questions questions{stage, machine_of(device, "server"), device.make_dissector, {}};
+  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+  EXPECT_EQ(stage.times, 3);
+  stage.times_late = 1'000;  // somebody who is always late is heard all the same
+  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+}
 
 TEST(Questions, BeginWithWhatLeadsBackIfNobodyCanStartTheDeviceAgain) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
