@@ -136,6 +136,15 @@ std::int64_t end_of(Dice& dice, const Field& field) {
   return dice.one_of(ends);
 }
 
+/// Those that say what a message is all about have values with names, and are few among many.
+const Field& some_field(Dice& dice, std::span<const Field> fields) {
+  std::vector<const Field*> named;
+  for (const auto& field : fields) {
+    if (!field.values.empty()) named.push_back(&field);
+  }
+  return named.empty() || !dice.one_in(4) ? dice.one_of(fields) : *dice.one_of(named);
+}
+
 void spoil_bytes_of(Dice& dice, const Field& field, std::span<std::byte> message) {
   if (field.offset + std::size_t{field.width} > message.size() || field.width == 0) return;
   const bool is_named = !field.values.empty() && !dice.one_in(3);
@@ -231,7 +240,7 @@ void Author::change_a_field(Dice& dice, KeptRecord& record) const {
   const auto messages = messages_in(record, *dissector);
   // Only where the bytes are one message is it known where its fields are.
   if (messages.empty() || messages.front().fields.empty()) return change_some_bytes(dice, record);
-  spoil_field(dice, record, messages.front(), dice.one_of(messages.front().fields));
+  spoil_field(dice, record, messages.front(), some_field(dice, messages.front().fields));
 }
 
 void Author::spoil_field(Dice& dice, KeptRecord& record, const Message& whole,
@@ -285,26 +294,36 @@ void Author::sweep(Dice& dice, Script& script) const {
   const auto messages = messages_in(*record, *dissector);
   const bool has_fields = !messages.empty() && !messages.front().fields.empty();
   const auto* const field =
-      has_fields && !dice.one_in(4) ? &dice.one_of(messages.front().fields) : nullptr;
+      has_fields && !dice.one_in(4) ? &some_field(dice, messages.front().fields) : nullptr;
   const auto byte_place = dice.one_in(2) ? std::max<std::int64_t>(0, std::ssize(record->bytes) - 2)
                                          : dice.between(0, std::ssize(record->bytes) - 1);
   const bool is_longer = dice.one_in(2);
   const auto original = *record;
-  insert_copies(script, place, last, static_cast<std::size_t>(dice.between(4, 40)),
-                some_pause(dice), [&](KeptRecord& copy) {
-                  if (copy.bytes != original.bytes || !is_sent(copy)) return;
-                  if (field != nullptr) {
-                    spoil_field(dice, copy, messages.front(), *field);
-                    return;
-                  }
-                  const auto at = copy.bytes.begin() + byte_place;
-                  if (is_longer) {
-                    copy.bytes.insert(at, odd_byte(dice));
-                  } else {
-                    *at = odd_byte(dice);
-                    if (!dice.one_in(4)) seal(copy);
-                  }
-                });
+  const auto vary = [&](KeptRecord& copy) {
+    if (field != nullptr) return spoil_field(dice, copy, messages.front(), *field);
+    const auto at = copy.bytes.begin() + byte_place;
+    if (is_longer) {
+      copy.bytes.insert(at, odd_byte(dice));
+    } else {
+      *at = odd_byte(dice);
+      if (!dice.one_in(4)) seal(copy);
+    }
+  };
+  // Each of them a few times in a row now and then, as for what a second one does, or an eighth.
+  const auto times = static_cast<std::size_t>(dice.one_in(3) ? dice.between(2, 16) : 1);
+  const auto values = static_cast<std::size_t>(dice.between(4, times > 1 ? 16 : 40));
+  KeptRecord current;
+  std::size_t left = 0;
+  insert_copies(script, place, last, values * times, some_pause(dice), [&](KeptRecord& copy) {
+    if (copy.bytes != original.bytes || !is_sent(copy)) return;
+    if (left == 0) {
+      current = copy;
+      vary(current);
+      left = times;
+    }
+    copy.bytes = current.bytes;
+    --left;
+  });
 }
 
 void Author::cut_bytes(Dice& dice, Script& script) const {

@@ -20,6 +20,9 @@ constexpr Duration kLead = 1ms;
 /// Of what is done, beside what letters leave for an answer.
 constexpr Duration kMostLateness = 50ms;
 
+/// A reply that comes later is missing.
+constexpr Duration kLongestLate = 300ms;
+
 /// What comes with a reply belongs to the same letter.
 constexpr Duration kTogether = 2ms;
 
@@ -119,7 +122,8 @@ Questions::Asked Questions::script_of(const mealy::Word& word) const {
   }
   begins.push_back(acts.now());
   auto script = acts.script();
-  script.push_back(end_at(acts.now()));
+  // What replies to the last letter may be late, too, and is given back to it.
+  script.push_back(end_at(acts.now() + (machine_.is_reply != nullptr ? kLongestLate : Duration{})));
   return {std::move(script), std::move(begins)};
 }
 

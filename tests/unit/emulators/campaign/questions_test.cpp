@@ -139,6 +139,8 @@ TEST(Questions, GiveALateReplyToTheLetterItIsFor) {
   stage.said = {line_at(first + 65ms, "Accepted\r\n"), line_at(first + 66ms, "Freezed\r\n"),
                 line_at(first + 100ms, "Rejected\r\n")};
   EXPECT_EQ(questions.ask({1, 5}).value(), (mealy::Said{"Accepted, Freezed", "Rejected"}));
+  stage.said.back().time += 200ms;  // later than the word
+  EXPECT_EQ(questions.ask({1, 5}).value(), (mealy::Said{"Accepted, Freezed", "Rejected"}));
   stage.said.pop_back();  // now it is not known which of them is without a reply
   EXPECT_EQ(questions.ask({1, 5}).value(), (mealy::Said{"", "Accepted, Freezed"}));
 }
