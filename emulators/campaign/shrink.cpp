@@ -106,10 +106,12 @@ class Shrinking {
     return false;
   }
 
-  /// Without all that are alike, or all of them but the last.
+  /// Of a long one without all that are alike, or all of them but the last.
   void leave_out_alike() {
-    constexpr std::ptrdiff_t kSome = 4;
-    for (std::size_t i = 0; i < script_.size() && may_go_on_(); ++i) {
+    constexpr int kMostKinds = 100;
+    if (script_.size() < kMany) return;
+    int left = kMostKinds;
+    for (std::size_t i = 0; i < script_.size() && left > 0 && may_go_on_(); ++i) {
       const auto begin = script_.begin() + static_cast<std::ptrdiff_t>(i);
       const auto one = *begin;
       const auto is_alike = [&one](const KeptRecord& other) {
@@ -117,7 +119,7 @@ class Shrinking {
                other.bytes == one.bytes && other.details == one.details;
       };
       if (std::find_if(script_.begin(), begin, is_alike) != begin) continue;  // has been looked at
-      if (std::ranges::count_if(script_, is_alike) < kSome) continue;
+      --left;
       auto none = script_;
       std::erase_if(none, is_alike);
       if (try_instead(std::move(none))) {
@@ -374,6 +376,7 @@ Script shrink(Script script, const Script& plain, MakeDissector make_dissector, 
   }
   while (shrinking.leave_out()) {
   }
+  shrinking.leave_out_alike();
   shrinking.merge();
   shrinking.join();
   constexpr std::size_t kMostPlaces = 24;
