@@ -57,7 +57,7 @@ std::size_t some_place(Dice& dice, const Script& script) {
 }
 
 Duration some_pause(Dice& dice) {
-  return std::chrono::microseconds{dice.one_in(3) ? mostly_few(dice, 500, 100'000)
+  return std::chrono::microseconds{dice.one_in(3) ? mostly_few(dice, 500, 200'000)
                                                   : mostly_few(dice, 500, 20'000)};
 }
 
@@ -426,7 +426,9 @@ void Author::fit(Dice& dice, Script& script) const {
   }
   // Most are short, for what takes long is rare, and time is dear.
   constexpr auto kShortPart = 8;
-  const auto longest = dice.one_in(kShortPart) ? material_.longest : material_.longest / kShortPart;
+  constexpr auto kMiddlePart = 3;
+  const auto part = dice.one_in(kShortPart) ? 1 : dice.one_in(4) ? kMiddlePart : kShortPart;
+  const auto longest = material_.longest / part;
   std::erase_if(script, [&](const KeptRecord& one) { return one.time > Instant{longest}; });
   if (script.size() > kMostRecords) script.resize(kMostRecords);
   if (material_.kind != LinkKind::kBus) return;
