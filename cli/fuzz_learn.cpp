@@ -73,8 +73,9 @@ std::string row_name_of(const Device& device, const Lesson& lesson, const std::s
 std::string cost_of(const mealy::Asked& asked) {
   return fmt::format(
       "{} letters in {} words, {} words to try it{}", asked.letters, asked.words, asked.tests,
-      asked.unsteady == 0 ? ""
-                          : fmt::format(", {} that were answered otherwise once", asked.unsteady));
+      asked.unsteady == 0
+          ? ""
+          : fmt::format(", {} that were answered otherwise at least once", asked.unsteady));
 }
 
 ReportRow lesson_row(const Device& device, const Lesson& lesson) {

@@ -87,6 +87,10 @@ constexpr std::array kLetters{letter<kEStop>("EStop"),
                               letter<kRun>("RunObjective"),
                               AbstractLetter{"quiet", let_it_move}};
 
+bool is_reply(const Message& message) {
+  return message.name == "Accepted" || message.name == "Rejected";
+}
+
 /// Replies, then events: which comes first, if both come at once, is not said
 /// (kinovazed.reply.race). When a heartbeat comes depends on when it is asked.
 std::string said(std::span<const Message> messages) {
@@ -94,8 +98,7 @@ std::string said(std::span<const Message> messages) {
   std::string events;
   for (const auto& message : messages) {
     if (message.name == kHeartbeatName) continue;
-    const bool is_reply = message.name == "Accepted" || message.name == "Rejected";
-    auto& list = is_reply ? replies : events;
+    auto& list = is_reply(message) ? replies : events;
     if (!list.empty()) list += ", ";
     list += message.fault.empty() ? message.name : "noise";
   }
@@ -143,6 +146,7 @@ std::span<const campaign::Learnable> machines() {
       campaign::Learnable{.name = "server",
                           .letters = kLetters,
                           .said = said,
+                          .is_reply = is_reply,
                           .quiet = kQuiet,
                           .documented = kTables,
                           .source = "docs/spec/kinovazed.md, States, Interrupts and ends",

@@ -52,6 +52,9 @@ struct Learnable {
   /// What is said, in a few words, of the messages that came from the device; empty: nothing of
   /// interest. The same for values that do not matter.
   std::string (*said)(std::span<const Message> messages){};
+  /// Whether it is the reply of which each message sent gets one, in their order: one that comes in
+  /// the time of the next letter still belongs to its own. nullptr: there is no such thing.
+  bool (*is_reply)(const Message& message){};
   Duration quiet{};                            ///< as for `Acts::wait_until_quiet`
   std::span<const mealy::Table> documented{};  ///< empty: no document tells
   std::string_view source{};                   ///< where it is documented

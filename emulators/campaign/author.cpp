@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "emulators/sessions/odd_fields.hpp"
+#include "harness/link/bus_port.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -55,12 +56,46 @@ std::size_t some_place(Dice& dice, const Script& script) {
   return dice.number<std::size_t>(0, std::ssize(script) - 1);
 }
 
+Duration some_pause(Dice& dice) {
+  return std::chrono::microseconds{dice.one_in(3) ? mostly_few(dice, 500, 200'000)
+                                                  : mostly_few(dice, 500, 20'000)};
+}
+
+/// The last of what belongs to the record there: on a bus, a choice and what it chose are read
+/// together.
+std::size_t end_of_exchange(const Script& script, std::size_t place) {
+  const bool is_followed = script[place].kind == LinkKind::kBus && place + 1 < script.size() &&
+                           script[place + 1].kind == LinkKind::kBus && !is_sent(script[place + 1]);
+  return is_followed ? place + 1 : place;
+}
+
 /// From a place on everything is later, or earlier as far as nothing overtakes.
 void shift_from(Script& script, std::size_t place, Duration by) {
   if (place >= script.size()) return;
   const auto before = place == 0 ? Instant{} : script[place - 1].time;
   const auto shift = std::max(by, before - script[place].time);
   for (auto i = place; i < script.size(); ++i) script[i].time += shift;
+}
+
+/// So many copies of what is from `first` to `last` after it, each `pause` after the one before;
+/// what follows is later by as much. `change` may change each record of them.
+template <class Change>
+void insert_copies(Script& script, std::size_t first, std::size_t last, std::size_t count,
+                   Duration pause, Change change) {
+  const auto end = script.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+  const Script part(script.begin() + static_cast<std::ptrdiff_t>(first), end);
+  const auto step = part.back().time - part.front().time + pause;
+  Script copies;
+  for (std::size_t i = 1; i <= count && script.size() + copies.size() < kMostRecords; ++i) {
+    for (auto copy : part) {
+      copy.time += step * static_cast<std::int64_t>(i);
+      change(copy);
+      copies.push_back(std::move(copy));
+    }
+  }
+  shift_from(script, last + 1, step * static_cast<std::int64_t>(count));
+  script.insert(script.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                std::make_move_iterator(copies.begin()), std::make_move_iterator(copies.end()));
 }
 
 /// Bits of a float that computations go wrong with.
@@ -71,11 +106,43 @@ std::int64_t odd_float(Dice& dice) {
   return dice.one_of(kBits);
 }
 
+/// A number beside which a computation may turn: a power of two or of ten, or one next to it.
+std::int64_t edge(Dice& dice) {
+  constexpr std::array<std::int64_t, 24> kEdges{
+      1,     2,      4,      8,       10,      16,        32,        64,
+      90,    100,    128,    180,     256,     1000,      1'024,     4'096,
+      8'192, 32'768, 65'536, 100'000, 1 << 20, 1'000'000, 1LL << 23, 1LL << 31};
+  const auto value = dice.one_of(kEdges) + dice.between(-1, 1);
+  return dice.one_in(3) ? -value : value;
+}
+
+/// What is beside the number that is there, or has something to do with it.
+std::int64_t beside(Dice& dice, std::int64_t value) {
+  const std::array<std::int64_t, 6> kOthers{value + 1, value - 1, -value,
+                                            value / 2, value ^ 1, value * 2};
+  return dice.one_of(kOthers);
+}
+
+/// A byte that readers of text or of numbers may take otherwise.
+std::byte odd_byte(Dice& dice) {
+  constexpr std::string_view kOdd{"\0\t\n\v\f\r :+-.,0%\x1a\x7f\x80\xff", 18};
+  return static_cast<std::byte>(dice.one_of(kOdd));
+}
+
 /// An end of the field's range, with or without a sign.
 std::int64_t end_of(Dice& dice, const Field& field) {
   const auto top = std::int64_t{1} << (8U * field.width - 1U);
   const std::array<std::int64_t, 4> ends{top - 1, -top, 2 * top - 1, top};
   return dice.one_of(ends);
+}
+
+/// Those that say what a message is all about have values with names, and are few among many.
+const Field& some_field(Dice& dice, std::span<const Field> fields) {
+  std::vector<const Field*> named;
+  for (const auto& field : fields) {
+    if (!field.values.empty()) named.push_back(&field);
+  }
+  return named.empty() || !dice.one_in(4) ? dice.one_of(fields) : *dice.one_of(named);
 }
 
 void spoil_bytes_of(Dice& dice, const Field& field, std::span<std::byte> message) {
@@ -84,8 +151,19 @@ void spoil_bytes_of(Dice& dice, const Field& field, std::span<std::byte> message
   const auto value = field.encoding == Encoding::kFloatLittle && dice.one_in(2) ? odd_float(dice)
                      : is_named       ? dice.one_of(field.values).value
                      : dice.one_in(4) ? end_of(dice, field)
+                     : dice.one_in(3) ? edge(dice)
+                     : dice.one_in(3) ? beside(dice, field_value(field, message))
                                       : sessions::odd_number(dice);
   set_field_value(field, message, value);
+}
+
+/// A number as programs write it, and as some do not expect it.
+std::string number_as_text(Dice& dice) {
+  const auto number = std::to_string(dice.one_in(2) ? edge(dice) : sessions::odd_number(dice));
+  if (!dice.one_in(8)) return number;
+  constexpr std::array<std::string_view, 5> kBefore{"+", "0", " ", "0x", "--"};
+  constexpr std::array<std::string_view, 5> kAfter{".0", " ", "e1", "\v", ""};
+  return std::string{dice.one_of(kBefore)}.append(number).append(dice.one_of(kAfter));
 }
 
 /// The piece of a line that colons divide, replaced.
@@ -100,8 +178,7 @@ void spoil_piece_of(Dice& dice, const Field& field, std::vector<std::byte>& line
     return byte == kColon || byte == std::byte{'\r'} || byte == std::byte{'\n'};
   });
   const bool is_named = !field.values.empty() && !dice.one_in(3);
-  const auto text = is_named ? std::string{dice.one_of(field.values).name}
-                             : std::to_string(sessions::odd_number(dice));
+  const auto text = is_named ? std::string{dice.one_of(field.values).name} : number_as_text(dice);
   const auto bytes = std::as_bytes(std::span{text});
   const auto place = line.erase(begin, end);
   line.insert(place, bytes.begin(), bytes.end());
@@ -110,7 +187,8 @@ void spoil_piece_of(Dice& dice, const Field& field, std::vector<std::byte>& line
 }  // namespace
 
 Script Author::draw(std::uint64_t seed, const std::vector<Script>& worthy) const {
-  constexpr std::array<std::pair<int, Change>, 10> kChanges{{{8, &Author::change_field},
+  constexpr std::array<std::pair<int, Change>, 11> kChanges{{{8, &Author::change_field},
+                                                             {6, &Author::sweep},
                                                              {3, &Author::change_bytes},
                                                              {2, &Author::cut_bytes},
                                                              {2, &Author::add_bytes},
@@ -124,8 +202,9 @@ Script Author::draw(std::uint64_t seed, const std::vector<Script>& worthy) const
   const bool is_fresh = worthy.empty() || dice.one_in(2);
   auto script = is_fresh ? fresh(dice) : dice.one_of(worthy);
   if (!is_fresh && dice.one_in(5)) script = joined(std::move(script), dice.one_of(worthy), 10ms);
-  const auto changes =
-      is_fresh && material_.draw_session != nullptr ? dice.between(0, 1) : mostly_few(dice, 1, 12);
+  if (!worthy.empty() && dice.one_in(6)) splice(dice, script, dice.one_of(worthy));
+  const auto changes = is_fresh && material_.draw_session != nullptr ? mostly_few(dice, 0, 5)
+                                                                     : mostly_few(dice, 1, 12);
   for (auto left = changes; left > 0 && !script.empty(); --left) {
     const auto change = dice.weighted(kChanges, [](const auto& one) { return one.first; }).second;
     (this->*change)(dice, script);
@@ -153,34 +232,98 @@ Script Author::harmless_ones(Dice& dice) const {
 
 void Author::change_field(Dice& dice, Script& script) const {
   auto* const record = some_sent(dice, script);
-  if (record == nullptr) return;
+  if (record != nullptr) change_a_field(dice, *record);
+}
+
+void Author::change_a_field(Dice& dice, KeptRecord& record) const {
   const auto dissector = material_.make_dissector();
-  const auto messages = messages_in(*record, *dissector);
+  const auto messages = messages_in(record, *dissector);
   // Only where the bytes are one message is it known where its fields are.
-  const std::size_t head = record->kind == LinkKind::kBus ? 1 : 0;
-  if (messages.empty() || messages.front().fields.empty()) return change_bytes(dice, script);
-  auto message = messages.front().raw;
-  const auto& field = dice.one_of(messages.front().fields);
-  if (field.place == Place::kPiece) {
-    spoil_piece_of(dice, field, record->bytes);
-    return;
-  }
-  if (message.size() > record->bytes.size() + head) return;
+  if (messages.empty() || messages.front().fields.empty()) return change_some_bytes(dice, record);
+  spoil_field(dice, record, messages.front(), some_field(dice, messages.front().fields));
+}
+
+void Author::spoil_field(Dice& dice, KeptRecord& record, const Message& whole,
+                         const Field& field) const {
+  if (field.place == Place::kPiece) return spoil_piece_of(dice, field, record.bytes);
+  const std::size_t head = record.kind == LinkKind::kBus ? 1 : 0;
+  auto message = whole.raw;
+  if (message.size() > record.bytes.size() + head) return;
   spoil_bytes_of(dice, field, message);
-  if (material_.seal != nullptr && !dice.one_in(4)) material_.seal(message);
   std::copy(message.begin() + static_cast<std::ptrdiff_t>(head), message.end(),
-            record->bytes.begin());
+            record.bytes.begin());
+  if (!dice.one_in(4)) seal(record);
+}
+
+/// Of a bus the address is part of a message, though not of the record.
+void Author::seal(KeptRecord& record) const {
+  if (material_.seal == nullptr) return;
+  auto message = record.bytes;
+  const std::size_t head = record.kind == LinkKind::kBus ? 1 : 0;
+  if (head > 0) {
+    const BusAddress address{static_cast<std::uint8_t>(record.id)};
+    message.insert(message.begin(), head_of(write_to(address, {})));
+  }
+  material_.seal(message);
+  std::copy(message.begin() + static_cast<std::ptrdiff_t>(head), message.end(),
+            record.bytes.begin());
 }
 
 void Author::change_bytes(Dice& dice, Script& script) const {
   auto* const record = some_sent(dice, script);
-  if (record == nullptr) return;
+  if (record != nullptr) change_some_bytes(dice, *record);
+}
+
+void Author::change_some_bytes(Dice& dice, KeptRecord& record) const {
   for (auto left = mostly_few(dice, 1, 8); left > 0; --left) {
-    auto& byte = dice.one_of(record->bytes);
+    auto& byte = dice.one_of(record.bytes);
     byte = dice.one_in(2) ? dice.byte()
                           : byte ^ static_cast<std::byte>(1U << dice.number<unsigned>(0, 7));
   }
-  if (material_.seal != nullptr && dice.one_in(2)) material_.seal(record->bytes);
+  if (dice.one_in(2)) seal(record);
+}
+
+/// One message many times, each with another value in one and the same field, or with another odd
+/// byte at one and the same place: what only one of them does is met soon.
+void Author::sweep(Dice& dice, Script& script) const {
+  const auto* const record = some_sent(dice, script);
+  if (record == nullptr) return;
+  const auto place = static_cast<std::size_t>(record - script.data());
+  const auto last = end_of_exchange(script, place);
+  const auto dissector = material_.make_dissector();
+  const auto messages = messages_in(*record, *dissector);
+  const bool has_fields = !messages.empty() && !messages.front().fields.empty();
+  const auto* const field =
+      has_fields && !dice.one_in(4) ? &some_field(dice, messages.front().fields) : nullptr;
+  const auto byte_place = dice.one_in(2) ? std::max<std::int64_t>(0, std::ssize(record->bytes) - 2)
+                                         : dice.between(0, std::ssize(record->bytes) - 1);
+  const bool is_longer = dice.one_in(2);
+  const auto original = *record;
+  const auto vary = [&](KeptRecord& copy) {
+    if (field != nullptr) return spoil_field(dice, copy, messages.front(), *field);
+    const auto at = copy.bytes.begin() + byte_place;
+    if (is_longer) {
+      copy.bytes.insert(at, odd_byte(dice));
+    } else {
+      *at = odd_byte(dice);
+      if (!dice.one_in(4)) seal(copy);
+    }
+  };
+  // Each of them a few times in a row now and then, as for what a second one does, or an eighth.
+  const auto times = static_cast<std::size_t>(dice.one_in(3) ? dice.between(2, 16) : 1);
+  const auto values = static_cast<std::size_t>(dice.between(4, times > 1 ? 16 : 40));
+  KeptRecord current;
+  std::size_t left = 0;
+  insert_copies(script, place, last, values * times, some_pause(dice), [&](KeptRecord& copy) {
+    if (copy.bytes != original.bytes || !is_sent(copy)) return;
+    if (left == 0) {
+      current = copy;
+      vary(current);
+      left = times;
+    }
+    copy.bytes = current.bytes;
+    --left;
+  });
 }
 
 void Author::cut_bytes(Dice& dice, Script& script) const {
@@ -193,7 +336,8 @@ void Author::cut_bytes(Dice& dice, Script& script) const {
 void Author::add_bytes(Dice& dice, Script& script) const {
   auto* const record = some_sent(dice, script);
   if (record == nullptr || record->bytes.size() > kMostBytes) return;
-  const auto more = dice.bytes(1, dice.one_in(6) ? 300 : 8);
+  const auto more =
+      dice.one_in(2) ? std::vector{odd_byte(dice)} : dice.bytes(1, dice.one_in(6) ? 300 : 8);
   const auto place = dice.number<std::ptrdiff_t>(0, std::ssize(record->bytes));
   record->bytes.insert(record->bytes.begin() + place, more.begin(), more.end());
 }
@@ -212,35 +356,35 @@ void Author::split(Dice& dice, Script& script) const {
 }
 
 void Author::repeat(Dice& dice, Script& script) const {
+  constexpr std::size_t kMostTogether = 4;
   const auto* const record = some_sent(dice, script);
   if (record == nullptr) return;
-  const auto count = some_count(dice);
   const auto place = static_cast<std::size_t>(record - script.data());
-  const auto pause = std::chrono::microseconds{mostly_few(dice, 500, 20'000)};
-  auto last = place;
-  if (record->kind == LinkKind::kBus && place + 1 < script.size() &&
-      script[place + 1].kind == LinkKind::kBus && !is_sent(script[place + 1])) {
-    ++last;  // a choice and what it chose are read together
+  auto last = end_of_exchange(script, place);
+  if (dice.one_in(2)) {
+    last = std::min(script.size() - 1, last + dice.number<std::size_t>(0, kMostTogether - 1));
   }
-  const Script part(script.begin() + static_cast<std::ptrdiff_t>(place),
-                    script.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-  const auto step = part.back().time - part.front().time + pause;
-  Script copies;
-  for (std::size_t i = 1; i <= count && script.size() + copies.size() < kMostRecords; ++i) {
-    for (auto copy : part) {
-      copy.time += step * static_cast<std::int64_t>(i);
-      copies.push_back(std::move(copy));
-    }
-  }
-  shift_from(script, last + 1, step * static_cast<std::int64_t>(count));
-  script.insert(script.begin() + static_cast<std::ptrdiff_t>(last) + 1,
-                std::make_move_iterator(copies.begin()), std::make_move_iterator(copies.end()));
+  insert_copies(script, place, last, some_count(dice), some_pause(dice), [](KeptRecord&) {});
 }
 
 void Author::leave_out(Dice& dice, Script& script) const {
   const auto first = static_cast<std::ptrdiff_t>(some_place(dice, script));
   const auto count = std::min(mostly_few(dice, 1, 50), std::ssize(script) - first);
   script.erase(script.begin() + first, script.begin() + first + count);
+}
+
+/// Some of what another script does, in between.
+void Author::splice(Dice& dice, Script& script, const Script& other) const {
+  if (script.empty() || other.empty()) return;
+  const auto first = static_cast<std::ptrdiff_t>(some_place(dice, other));
+  const auto count = std::min(mostly_few(dice, 1, 60), std::ssize(other) - first);
+  Script part(other.begin() + first, other.begin() + first + count);
+  const auto place = some_place(dice, script);
+  const auto shift = script[place].time + some_pause(dice) - part.front().time;
+  for (auto& record : part) record.time += shift;
+  shift_from(script, place + 1, part.back().time - script[place].time);
+  script.insert(script.begin() + static_cast<std::ptrdiff_t>(place) + 1,
+                std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
 }
 
 void Author::swap(Dice& dice, Script& script) const {
@@ -282,7 +426,9 @@ void Author::fit(Dice& dice, Script& script) const {
   }
   // Most are short, for what takes long is rare, and time is dear.
   constexpr auto kShortPart = 8;
-  const auto longest = dice.one_in(kShortPart) ? material_.longest : material_.longest / kShortPart;
+  constexpr auto kMiddlePart = 3;
+  const auto part = dice.one_in(kShortPart) ? 1 : dice.one_in(4) ? kMiddlePart : kShortPart;
+  const auto longest = material_.longest / part;
   std::erase_if(script, [&](const KeptRecord& one) { return one.time > Instant{longest}; });
   if (script.size() > kMostRecords) script.resize(kMostRecords);
   if (material_.kind != LinkKind::kBus) return;

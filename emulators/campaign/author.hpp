@@ -19,7 +19,8 @@ struct Material {
   DrawSession draw_session{};  ///< nullptr: scripts begin with what is harmless
   /// One harmless exchange. Each case ends with it, as the question whether the device is well.
   Script harmless;
-  /// Makes lengths and checksums of a message right again; nullptr: it has none, or nobody can.
+  /// Makes lengths and checksums of a message right again, on a bus of one with the byte of the
+  /// address; nullptr: it has none, or nobody can.
   void (*seal)(std::span<std::byte> message){};
   std::vector<std::uint32_t> addresses{};  ///< of a bus: who is there
   /// Leaves out of a script what may not be sent; empty: all may.
@@ -48,6 +49,12 @@ class Author {
   [[nodiscard]] Script fresh(Dice& dice) const;
   [[nodiscard]] Script harmless_ones(Dice& dice) const;
   void change_field(Dice& dice, Script& script) const;
+  void change_a_field(Dice& dice, KeptRecord& record) const;
+  void spoil_field(Dice& dice, KeptRecord& record, const Message& whole, const Field& field) const;
+  void seal(KeptRecord& record) const;
+  void change_some_bytes(Dice& dice, KeptRecord& record) const;
+  void sweep(Dice& dice, Script& script) const;
+  void splice(Dice& dice, Script& script, const Script& other) const;
   void change_bytes(Dice& dice, Script& script) const;
   void cut_bytes(Dice& dice, Script& script) const;
   void add_bytes(Dice& dice, Script& script) const;

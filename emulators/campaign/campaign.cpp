@@ -194,14 +194,19 @@ class Campaign {
     return {};
   }
 
-  /// Whether the symptom comes again on devices that are as new.
-  [[nodiscard]] Outcome<bool> shows(const Script& script, const Symptom& symptom) {
+  using IsIt = std::function<bool(const Symptom& seen)>;
+
+  /// Whether it comes again on devices that are as new.
+  [[nodiscard]] Outcome<bool> shows(const Script& script, const IsIt& is_it) {
     if (auto begun = stage_.reset(); !begun) return tl::unexpected{begun.error()};
     auto seen = see(script);
     if (!seen) return tl::unexpected{seen.error()};
-    const bool is_there = seen->symptom && is_same(*seen->symptom, symptom);
+    const bool is_there = seen->symptom && is_it(*seen->symptom);
     if (is_there) last_seen_ = *std::move(seen);
     return is_there;
+  }
+  [[nodiscard]] Outcome<bool> shows(const Script& script, const Symptom& symptom) {
+    return shows(script, [&](const Symptom& seen) { return is_same(seen, symptom); });
   }
 
   /// The same, as often as it takes to be sure.
@@ -240,7 +245,8 @@ class Campaign {
     if (!always) return tl::unexpected{always.error()};
     auto short_one = *always ? Outcome<Script>{script} : made_short(script, symptom);
     if (!short_one) return tl::unexpected{short_one.error()};
-    auto is_sure = *always ? Outcome<bool>{false} : shows_surely(*short_one, symptom);
+    auto is_sure =
+        *always ? Outcome<bool>{false} : shows_surely(*short_one, Symptom{*last_seen_.symptom});
     if (!is_sure) return tl::unexpected{is_sure.error()};
     if (!*is_sure) {  // rather long than wrong
       short_one = std::move(script);
@@ -258,7 +264,18 @@ class Campaign {
     return start_again();
   }
 
+  /// With that symptom; or, if it stays long so, with one of another answer that is wrong in the
+  /// same respect, as when all answers are late.
   [[nodiscard]] Outcome<Script> made_short(Script script, const Symptom& symptom) {
+    constexpr std::size_t kLong = 20;
+    auto strictly =
+        made_short(std::move(script), [&](const Symptom& seen) { return is_same(seen, symptom); });
+    if (!strictly || strictly->size() <= kLong) return strictly;
+    return made_short(*std::move(strictly), [&](const Symptom& seen) {
+      return std::ranges::find_first_of(seen.parts, symptom.parts) != seen.parts.end();
+    });
+  }
+  [[nodiscard]] Outcome<Script> made_short(Script script, const IsIt& is_it) {
     std::optional<Problem> failure;
     std::size_t attempts = 0;
     const auto begun = WallClock::now();
@@ -268,7 +285,7 @@ class Campaign {
     };
     const Shows shows_it = [&](const Script& other) {
       ++attempts;
-      auto is_there = shows(other, symptom);
+      auto is_there = shows(other, is_it);
       if (!is_there && is_there.error().code != ErrorCode::kForbidden) failure = is_there.error();
       return is_there && *is_there;
     };

@@ -17,6 +17,40 @@ using namespace std::chrono_literals;
 /// which two letters meet.
 constexpr Duration kLead = 1ms;
 
+/// Of what is done, beside what letters leave for an answer.
+constexpr Duration kMostLateness = 50ms;
+
+/// A reply that comes later is missing.
+constexpr Duration kLongestLate = 300ms;
+
+/// What comes with a reply belongs to the same letter.
+constexpr Duration kTogether = 2ms;
+
+/// Which letter each message answers: the one in whose time it came. Numbers from 1, for some came
+/// before the first.
+std::vector<std::size_t> letters_by_time(const std::vector<Message>& messages,
+                                         const std::vector<Instant>& begins) {
+  std::vector<std::size_t> letters;
+  letters.reserve(messages.size());
+  for (const auto& message : messages) {
+    const auto next = std::ranges::upper_bound(begins, message.time);
+    letters.push_back(static_cast<std::size_t>(next - begins.begin()));
+  }
+  return letters;
+}
+
+/// For each thing sent the letter that sends it, numbers as above.
+std::vector<std::size_t> letters_that_send(const Script& script,
+                                           const std::vector<Instant>& begins) {
+  std::vector<std::size_t> letters;
+  for (const auto& record : script) {
+    if (!is_sent(record) || record.time < begins.front()) continue;
+    const auto next = std::ranges::upper_bound(begins, record.time);
+    letters.push_back(static_cast<std::size_t>(next - begins.begin()));
+  }
+  return letters;
+}
+
 /// What came from the device, and ends of connections, in order of time.
 std::vector<Message> messages_heard(const RecordedMessages& said) {
   std::vector<Message> messages;
@@ -56,14 +90,24 @@ Outcome<mealy::Said> Questions::ask(const mealy::Word& word) {
     return problem(ErrorCode::kUnsupported, "--learn",
                    "each word begins on a device that was started again: --restart says how");
   }
+  // Letters that came late came close together, and what was said to one may have been said in the
+  // time of the next. Nobody knows then, so the word is asked again.
+  constexpr int kTimes = 3;
+  for (int left = kTimes;; --left) {
+    const auto asked = script_of(word);
+    const auto heard = play(asked.script);
+    if (!heard) return tl::unexpected{heard.error()};
+    if (heard->lateness <= kMostLateness || left == 1) return answers_in(heard->target, asked);
+  }
+}
+
+Outcome<BothHeard> Questions::play(const Script& script) {
   if (stage_.can_reset() || !std::exchange(was_begun_, true)) {
     if (auto begun = stage_.reset(); !begun) return tl::unexpected{begun.error()};
   }
-  const auto asked = script_of(word);
-  const auto heard = stage_.play(asked.script);
-  if (!heard) return tl::unexpected{heard.error()};
-  if (heard->target.end) return tl::unexpected{*heard->target.end};
-  return answers_in(heard->target, asked);
+  auto heard = stage_.play(script);
+  if (heard && heard->target.end) return tl::unexpected{*heard->target.end};
+  return heard;
 }
 
 Questions::Asked Questions::script_of(const mealy::Word& word) const {
@@ -78,7 +122,8 @@ Questions::Asked Questions::script_of(const mealy::Word& word) const {
   }
   begins.push_back(acts.now());
   auto script = acts.script();
-  script.push_back(end_at(acts.now()));
+  // What replies to the last letter may be late, too, and is given back to it.
+  script.push_back(end_at(acts.now() + (machine_.is_reply != nullptr ? kLongestLate : Duration{})));
   return {std::move(script), std::move(begins)};
 }
 
@@ -86,16 +131,44 @@ mealy::Said Questions::answers_in(const Heard& heard, const Asked& asked) const 
   const auto said = messages_of(heard.said, make_dissector_);
   const auto messages = messages_heard(said);
   const auto end = end_of(heard.said);
+  auto letters = letters_by_time(messages, asked.begins);
+  if (machine_.is_reply != nullptr) give_back_replies(messages, asked, letters);
   mealy::Said answers;
   for (std::size_t i = 0; i + 1 < asked.begins.size(); ++i) {
-    const auto first = std::ranges::lower_bound(messages, asked.begins[i], {}, &Message::time);
-    const auto last = std::ranges::lower_bound(messages, asked.begins[i + 1], {}, &Message::time);
-    answers.push_back(machine_.said(std::span{first, last}));
+    std::vector<Message> own;
+    for (std::size_t j = 0; j < messages.size(); ++j) {
+      if (letters[j] == i + 1) own.push_back(messages[j]);
+    }
+    answers.push_back(machine_.said(own));
     if (end >= asked.begins[i] && end < asked.begins[i + 1]) {
       answers.back() += answers.back().empty() ? "the link ends" : ", the link ends";
     }
   }
   return answers;
+}
+
+/// Gives each reply to the letter that sent what it replies to, if none is missing, and with a late
+/// one what came together with it.
+void Questions::give_back_replies(const std::vector<Message>& messages, const Asked& asked,
+                                  std::vector<std::size_t>& letters) const {
+  const auto senders = letters_that_send(asked.script, asked.begins);
+  std::vector<std::size_t> replies;
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (letters[i] > 0 && machine_.is_reply(messages[i])) replies.push_back(i);
+  }
+  if (replies.size() != senders.size()) return;
+  const auto by_time = letters;
+  for (std::size_t i = 0; i < replies.size(); ++i) {
+    const auto own = by_time[replies[i]];
+    if (senders[i] >= own) continue;
+    const auto time = messages[replies[i]].time;
+    for (std::size_t j = 0; j < messages.size(); ++j) {
+      const bool is_with_it = by_time[j] == own && !machine_.is_reply(messages[j]) &&
+                              messages[j].time >= time - kTogether &&
+                              messages[j].time <= time + kTogether;
+      if (j == replies[i] || is_with_it) letters[j] = senders[i];
+    }
+  }
 }
 
 std::vector<std::string> letters_of(const Learnable& machine) {

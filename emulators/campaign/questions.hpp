@@ -10,7 +10,8 @@
 namespace armjig::campaign {
 
 /// Asks the target of a stage words of an alphabet. Each word is one script; what came between the
-/// beginnings of two letters is the answer to the first of them. A word begins on a target that is
+/// beginnings of two letters is the answer to the first of them, but for replies that were late
+/// (`Learnable::is_reply`). A word begins on a target that is
 /// as new, or that `Learnable::reset` has led to its beginning.
 class Questions final : public mealy::Teacher {
  public:
@@ -26,7 +27,11 @@ class Questions final : public mealy::Teacher {
     Script script;
     std::vector<Instant> begins;  ///< of each letter
   };
+  /// On a target that is where it begins.
+  [[nodiscard]] Outcome<BothHeard> play(const Script& script);
   [[nodiscard]] Asked script_of(const mealy::Word& word) const;
+  void give_back_replies(const std::vector<Message>& messages, const Asked& asked,
+                         std::vector<std::size_t>& letters) const;
   [[nodiscard]] mealy::Said answers_in(const Heard& heard, const Asked& asked) const;
 
   Stage& stage_;

@@ -45,10 +45,9 @@ class Shrinking {
   /// What counts messages may count harmless ones, too: as few of them as do, in place of all but
   /// the last few records.
   void count(const Script& plain) {
-    constexpr std::size_t kWorthIt = 100;
     constexpr std::array<std::size_t, 3> kTails{1, 4, 12};
     for (const auto tail : kTails) {
-      if (script_.size() < kWorthIt) return;
+      if (script_.size() < kMany) return;
       const auto full = script_;
       const auto most = (full.size() - tail) / std::max<std::size_t>(plain.size(), 1);
       const auto counted = [&](std::size_t times) {
@@ -58,12 +57,85 @@ class Shrinking {
                         Script(full.end() - static_cast<std::ptrdiff_t>(tail), full.end()));
       };
       if (!try_instead(counted(most))) continue;
+      is_counted_ = true;
       std::size_t shows_not = 0;
       for (auto shows = most; shows - shows_not > 1 && may_go_on_();) {
         const auto times = (shows + shows_not) / 2;
         (try_instead(counted(times)) ? shows : shows_not) = times;
       }
     }
+  }
+
+  /// What counts bytes does not ask how many records they came in: as much as there is room for
+  /// in each.
+  void merge() {
+    constexpr std::array<std::size_t, 3> kRooms{4096, 1024, 256};
+    for (const auto most : kRooms) {
+      if (is_counted_ || script_.size() < kMany) return;
+      if (try_instead(with_merged(most, Pace::kKept)) ||
+          try_instead(with_merged(most, Pace::kAtOnce))) {
+        while (leave_out()) {
+        }
+      }
+    }
+  }
+
+  /// What shows at a moment that has to be met is met by whoever looks often enough: some record or
+  /// all up to it, then a question time and again. True: it is shorter for it.
+  bool look_often(const Script& plain, std::size_t most_places) {
+    constexpr std::size_t kFew = 3;
+    if (script_.size() <= kFew) return false;
+    const auto full = script_;
+    const bool is_one = !plain.empty() && plain.front().kind == LinkKind::kStream;
+    const auto brief = is_one ? Script{plain.front()} : plain;
+    for (auto place = full.size(); place > 0 && most_places > 0; --place) {
+      if (!is_sent(full[place - 1])) continue;
+      --most_places;
+      const auto exchange = exchange_at(full, place - 1);
+      const auto end = full.begin() + static_cast<std::ptrdiff_t>(place);
+      for (const auto& lead : {exchange, Script(full.begin(), end)}) {
+        for (const auto& question : {exchange, brief}) {
+          for (const auto pause : {1ms, 7ms}) {
+            if (!may_go_on_()) return false;
+            if (look_often(lead, question, pause, full.size())) return true;
+            script_ = full;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Of a long one without all that are alike, or all of them but the last.
+  void leave_out_alike() {
+    constexpr int kMostKinds = 100;
+    if (script_.size() < kMany) return;
+    int left = kMostKinds;
+    for (std::size_t i = 0; i < script_.size() && left > 0 && may_go_on_(); ++i) {
+      const auto begin = script_.begin() + static_cast<std::ptrdiff_t>(i);
+      const auto one = *begin;
+      const auto is_alike = [&one](const KeptRecord& other) {
+        return other.kind == one.kind && other.direction == one.direction && other.id == one.id &&
+               other.bytes == one.bytes && other.details == one.details;
+      };
+      if (std::find_if(script_.begin(), begin, is_alike) != begin) continue;  // has been looked at
+      --left;
+      auto none = script_;
+      std::erase_if(none, is_alike);
+      if (try_instead(std::move(none))) {
+        --i;
+        continue;
+      }
+      auto last = script_;
+      const auto kept = std::find_if(last.rbegin(), last.rend(), is_alike).base() - 1;
+      last.erase(std::remove_if(last.begin(), kept, is_alike), kept);
+      (void)try_instead(std::move(last));
+    }
+  }
+
+  /// Whether nearly each of many records matters, as where something is counted.
+  [[nodiscard]] bool is_dense() {
+    return !is_counted_ && script_.size() >= kMany && !is_worth_it(1);
   }
 
   /// Messages in one piece that came in several.
@@ -92,29 +164,95 @@ class Shrinking {
   }
 
  private:
+  static constexpr std::size_t kMany = 100;  ///< more than anybody reads
+
+  bool look_often(const Script& lead, const Script& question, Duration pause, std::size_t least) {
+    constexpr int kTimes = 1'200;
+    auto other = lead;
+    for (int left = question.empty() ? 0 : kTimes; left > 0; --left) {
+      other = appended(std::move(other), question, pause);
+    }
+    if (!try_instead(std::move(other))) return false;
+    cut_end();
+    leave_out_alike();
+    while (leave_out()) {
+    }
+    return script_.size() < least;
+  }
+
+  /// What is sent there and, of a bus, what is read next.
+  [[nodiscard]] static Script exchange_at(const Script& script, std::size_t place) {
+    auto end = place + 1;
+    while (end < script.size() && script[end].kind == LinkKind::kBus && !is_sent(script[end]))
+      ++end;
+    return {script.begin() + static_cast<std::ptrdiff_t>(place),
+            script.begin() + static_cast<std::ptrdiff_t>(std::min(end, place + 2))};
+  }
+
+  enum class Pace : std::uint8_t { kKept, kAtOnce };
+
+  /// Neighbours that go the same way in records of at most so many bytes.
+  [[nodiscard]] Script with_merged(std::size_t most, Pace pace) const {
+    Script merged;
+    for (const auto& record : script_) {
+      const bool goes_on = !merged.empty() && is_sent(record) && is_sent(merged.back()) &&
+                           record.kind != LinkKind::kBus && record.kind == merged.back().kind &&
+                           record.id == merged.back().id;
+      if (goes_on && record.bytes.size() + merged.back().bytes.size() <= most) {
+        auto& bytes = merged.back().bytes;
+        bytes.insert(bytes.end(), record.bytes.begin(), record.bytes.end());
+        continue;
+      }
+      const auto before = merged.empty() ? record.time : merged.back().time;
+      merged.push_back(record);
+      if (goes_on && pace == Pace::kAtOnce) merged.back().time = before;
+    }
+    return merged;
+  }
+
   bool try_instead(Script other) {
     if (other == script_ || !may_go_on_() || !shows_(other)) return false;
     script_ = std::move(other);
     return true;
   }
 
+  /// Of many records a few pieces are tried first: where each of them matters, as where something
+  /// is counted, all of them would take long.
+  [[nodiscard]] bool is_worth_it(std::size_t piece) {
+    constexpr std::size_t kSamples = 12;
+    if (script_.size() / piece < kMany) return true;
+    const auto before = script_.size();
+    for (std::size_t i = 0; i < kSamples && may_go_on_(); ++i) {
+      const auto begin = script_.size() / kSamples * i;
+      (void)try_without(begin, begin + piece);
+      if (script_.size() < before) return true;
+    }
+    return false;
+  }
+
+  bool try_without(std::size_t begin, std::size_t end) {
+    auto other = script_;
+    other.erase(other.begin() + static_cast<std::ptrdiff_t>(begin),
+                other.begin() + static_cast<std::ptrdiff_t>(end));
+    return try_instead(std::move(other));
+  }
+
   void leave_out(std::size_t piece) {
+    if (!is_worth_it(piece)) return;
     // From the end, where what matters is, so that what leads there is tried as a whole.
     auto end = script_.size();
     while (end > 0 && may_go_on_()) {
       const auto begin = end > piece ? end - piece : 0;
-      auto other = script_;
-      other.erase(other.begin() + static_cast<std::ptrdiff_t>(begin),
-                  other.begin() + static_cast<std::ptrdiff_t>(end));
-      (void)try_instead(std::move(other));
+      (void)try_without(begin, end);
       end = begin;
     }
   }
 
   /// `more` in its own pace, a little later.
-  static Script appended(Script script, const Script& more) {
+  static Script appended(Script script, const Script& more, Duration pause = 1ms) {
     if (more.empty()) return script;
-    const auto shift = (script.empty() ? Instant{} : script.back().time + 1ms) - more.front().time;
+    const auto shift =
+        (script.empty() ? Instant{} : script.back().time + pause) - more.front().time;
     for (auto record : more) {
       record.time += shift;
       script.push_back(std::move(record));
@@ -215,6 +353,7 @@ class Shrinking {
   }
 
   Script script_;
+  bool is_counted_ = false;  ///< it is mostly harmless exchanges, as many as it takes
   MakeDissector make_dissector_;
   const Shows& shows_;
   const std::function<bool()>& may_go_on_;
@@ -229,9 +368,20 @@ Script shrink(Script script, const Script& plain, MakeDissector make_dissector, 
   shrinking.hurry();
   shrinking.join();
   shrinking.count(plain);
+  shrinking.leave_out_alike();
+  if (shrinking.is_dense()) {
+    constexpr std::size_t kMostPlacesIfLong = 3;
+    shrinking.merge();
+    (void)shrinking.look_often(plain, kMostPlacesIfLong);
+  }
   while (shrinking.leave_out()) {
   }
+  shrinking.leave_out_alike();
+  shrinking.merge();
   shrinking.join();
+  constexpr std::size_t kMostPlaces = 24;
+  while (shrinking.look_often(plain, kMostPlaces)) {
+  }
   shrinking.hurry();
   shrinking.simplify(plain);
   (void)shrinking.leave_out();

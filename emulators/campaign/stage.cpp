@@ -33,6 +33,14 @@ bool greet(SessionSource& server) {
 }
 bool greet(Endpoint& /*port*/) { return true; }
 
+Duration lateness_of(const Script& script, const std::vector<Instant>& passed) {
+  Duration latest{};
+  for (std::size_t i = 0; i < std::min(script.size(), passed.size()); ++i) {
+    if (is_sent(script[i])) latest = std::max(latest, passed[i] - script[i].time);
+  }
+  return latest;
+}
+
 /// When a live device may have got each record, given when it left: then; when it should have left;
 /// what left within a short time, together; all a little later.
 using Guess = Script (*)(const Script& script, const std::vector<Instant>& passed);
@@ -94,7 +102,7 @@ Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
     return tl::unexpected{played.error()};
   }
   const auto passed = played ? played->passed : std::vector<Instant>{};
-  BothHeard both{heard(std::move(played)), {}};
+  BothHeard both{heard(std::move(played)), {}, lateness_of(script, passed)};
   last_end_ = target_->port().now();
   for (std::size_t i = 0; i < models_.size(); ++i) {
     auto& model = models_[i].port();

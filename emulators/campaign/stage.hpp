@@ -24,6 +24,8 @@ struct Heard {
 struct BothHeard {
   Heard target;
   std::vector<Heard> models;  ///< each of them is right
+  /// By how much what was sent to the target left later than the script has it, at most.
+  Duration lateness{};
 };
 
 /// Where cases are played: a target, and beside it models of it that get the same at the same

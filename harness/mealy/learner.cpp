@@ -21,6 +21,8 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kFewestTests = 200;
 /// Letters of a walk that covers pairs of letters, after what leads to where it begins.
 constexpr std::size_t kLongestWalk = 6;
+/// Answers of before that may prove wrong: more of them, and the machine is not the same each time.
+constexpr int kMostCorrections = 10;
 
 Word joined(const Word& word, Letter letter) { return mealy::joined(word, Word{letter}); }
 
@@ -39,17 +41,35 @@ class Memory {
     }
     auto said = ask_teacher(word, states);
     if (said && contradiction_in(word, *said)) {
-      said = ask_teacher(word, states);
-      const auto place = said ? contradiction_in(word, *said) : std::nullopt;
-      if (place) {
-        note_contradiction(word, *place, *said);
-        return std::nullopt;
-      }
       ++asked_.unsteady;
+      said = ask_again(word, states);
     }
     if (!said) return tl::unexpected{said.error()};
+    const auto place = contradiction_in(word, *said);
+    if (place) {
+      const Word doubted{word.begin(), word.begin() + static_cast<std::ptrdiff_t>(*place) + 1};
+      const auto is_wrong = was_wrong(doubted, said->at(*place), states);
+      if (!is_wrong) return tl::unexpected{is_wrong.error()};
+      is_spent_ = true;
+      if (*is_wrong && corrections_ < kMostCorrections) {
+        ++corrections_;
+        is_corrected_ = true;
+        forget(doubted);
+      } else {
+        note_contradiction(word, *place, *said);
+      }
+      return std::nullopt;
+    }
     keep(word, *said);
     return *std::move(said);
+  }
+
+  /// Whether an answer of before proved wrong and was forgotten, so that all that was made of it
+  /// is to be made again. Asking may go on then.
+  [[nodiscard]] bool take_corrected() noexcept {
+    if (!std::exchange(is_corrected_, false)) return false;
+    is_spent_ = false;
+    return true;
   }
 
   [[nodiscard]] Asked& asked() noexcept { return asked_; }
@@ -67,6 +87,34 @@ class Memory {
     ++asked_.words;
     if (options_.on_asked) options_.on_asked(asked_, states);
     return teacher_.ask(word);
+  }
+
+  /// The first answer that is as those of before; if none of a few is, the last one.
+  Outcome<Said> ask_again(const Word& word, std::size_t states) {
+    constexpr int kTimes = 3;
+    auto said = ask_teacher(word, states);
+    for (int left = kTimes; left > 1 && said && contradiction_in(word, *said); --left) {
+      said = ask_teacher(word, states);
+    }
+    return said;
+  }
+
+  /// Whether the word, by itself, is answered as it is now, time and again, and not as before.
+  Outcome<bool> was_wrong(const Word& word, const std::string& now, std::size_t states) {
+    constexpr int kTimes = 2;
+    for (int left = kTimes; left > 0; --left) {
+      const auto said = ask_teacher(word, states);
+      if (!said) return tl::unexpected{said.error()};
+      if (said->back() != now) return false;
+    }
+    return true;
+  }
+
+  /// What was said to the last letter of the word, and all that was asked beyond.
+  void forget(const Word& word) {
+    std::size_t node = 0;
+    for (const auto letter : Word{word.begin(), word.end() - 1}) node = next(node, letter);
+    nodes_[node].next.erase(word.back());
   }
 
   [[nodiscard]] std::size_t next(std::size_t node, Letter letter) const {
@@ -113,7 +161,6 @@ class Memory {
   void note_contradiction(const Word& word, std::size_t place, const Said& said) {
     const auto end = word.begin() + static_cast<std::ptrdiff_t>(place);
     const auto before = recall({word.begin(), end + 1})->back();
-    is_spent_ = true;
     contradiction_ =
         fmt::format("after {}, {} is answered with {}, and was with {}",
                     Machine{letters_, {}}.words_of({word.begin(), end}), letters_[word[place]],
@@ -126,15 +173,16 @@ class Memory {
   std::vector<Node> nodes_{Node{}};
   Asked asked_;
   bool is_spent_ = false;
+  bool is_corrected_ = false;
+  int corrections_ = 0;
   std::string contradiction_;
 };
 
 class Learner {
  public:
-  Learner(Teacher& teacher, std::vector<std::string> letters, const LearnOptions& options)
-      : options_{options}, random_{options.seed} {
-    machine_.letters = std::move(letters);
-    memory_.emplace(teacher, machine_.letters, options);
+  Learner(Memory& memory, const std::vector<std::string>& letters, const LearnOptions& options)
+      : options_{options}, random_{options.seed}, memory_{memory} {
+    machine_.letters = letters;
     machine_.states.push_back(state({}));
     tree_.push_back({.state = 0});
     leaves_.push_back(0);
@@ -145,21 +193,21 @@ class Learner {
     Learned learned;
     for (;;) {
       if (auto closed = close(); !closed) return tl::unexpected{closed.error()};
-      if (memory_->is_spent()) break;
+      if (memory_.is_spent()) break;
       learned.machine = machine_;
       auto wrong = find_wrong();
       if (!wrong) return tl::unexpected{wrong.error()};
       if (wrong->empty()) {
-        learned.is_settled = !memory_->is_spent();
+        learned.is_settled = !memory_.is_spent();
         break;
       }
       if (auto put_right = learn_from(*wrong); !put_right) {
         return tl::unexpected{put_right.error()};
       }
-      if (memory_->is_spent()) break;
+      if (memory_.is_spent()) break;
     }
-    learned.asked = memory_->asked();
-    learned.contradiction = memory_->contradiction();
+    learned.asked = memory_.asked();
+    learned.contradiction = memory_.contradiction();
     return learned;
   }
 
@@ -184,7 +232,7 @@ class Learner {
   }
 
   Outcome<std::optional<Said>> ask(const Word& word) {
-    return memory_->ask(word, machine_.states.size());
+    return memory_.ask(word, machine_.states.size());
   }
 
   void await_steps(std::size_t state) {
@@ -300,7 +348,7 @@ class Learner {
   Outcome<Word> find_wrong() {
     for (auto walk = next_walk(); !walk.empty(); walk = next_walk()) {
       auto wrong = wrong_in(walk);
-      if (!wrong || !wrong->empty() || memory_->is_spent()) {
+      if (!wrong || !wrong->empty() || memory_.is_spent()) {
         for (const auto& pair : walked_) covered_.erase(pair);  // beyond what was wrong is nothing
         return wrong;
       }
@@ -308,7 +356,7 @@ class Learner {
     const auto steps = machine_.states.size() * machine_.letters.size();
     for (std::size_t i = 0; i < std::max(kFewestTests, steps); ++i) {
       auto wrong = wrong_in(draw());
-      if (!wrong || !wrong->empty() || memory_->is_spent()) return wrong;
+      if (!wrong || !wrong->empty() || memory_.is_spent()) return wrong;
     }
     return Word{};
   }
@@ -317,7 +365,7 @@ class Learner {
   /// gets none wrong, or nothing may be asked any more.
   Outcome<Word> wrong_in(const Word& word) {
     auto wrong = up_to_wrong(word);
-    ++memory_->asked().tests;
+    ++memory_.asked().tests;
     if (!wrong || wrong->size() < 2) return wrong;
     for (auto from = wrong->end() - 1; from != wrong->begin(); --from) {
       const auto& access = machine_.states[machine_.state_after({wrong->begin(), from})].access;
@@ -409,7 +457,7 @@ class Learner {
   const LearnOptions& options_;
   std::mt19937_64 random_;
   Machine machine_;
-  std::optional<Memory> memory_;
+  Memory& memory_;
   std::vector<Node> tree_;
   std::vector<std::size_t> leaves_;  ///< of each state, in the tree
   std::deque<Waiting> waiting_;
@@ -421,7 +469,11 @@ class Learner {
 
 Outcome<Learned> learn(Teacher& teacher, std::vector<std::string> letters,
                        const LearnOptions& options) {
-  return Learner{teacher, std::move(letters), options}.run();
+  Memory memory{teacher, letters, options};
+  for (;;) {
+    auto learned = Learner{memory, letters, options}.run();
+    if (!learned || !memory.take_corrected()) return learned;
+  }
 }
 
 }  // namespace armjig::mealy

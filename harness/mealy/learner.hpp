@@ -31,7 +31,7 @@ struct Asked {
   std::size_t letters{};   ///< given to the teacher, all words together
   std::size_t words{};     ///< the same in words, each of which begins anew
   std::size_t tests{};     ///< words that tried whether the machine is the right one
-  std::size_t unsteady{};  ///< words that were answered otherwise than before, and not so again
+  std::size_t unsteady{};  ///< words that were answered otherwise than before at least once
 };
 
 struct LearnOptions {
@@ -58,8 +58,11 @@ struct Learned {
 /// state of its own (R. Rivest, R. Schapire, 1993). To find such words, walks cover all pairs of
 /// letters in all states; then words lead to a state drawn at random, go on at random, most of them
 /// for a letter or two, and tell by the tree where they have led. When as many as there are steps
-/// have passed, the machine counts as right. No word is asked twice but one that was answered
-/// otherwise before.
+/// have passed, the machine counts as right. No word is asked twice but one that is answered
+/// otherwise than before. Of that one a few more answers are had: if one is as before, it counts.
+/// If the letter in question is answered otherwise time and again, also when nothing follows it,
+/// the answer of before was wrong (somebody was late), and what was learned from it is learned
+/// again. Else the teacher does not answer the same each time.
 ///
 /// Problems: those of the teacher.
 [[nodiscard]] Outcome<Learned> learn(Teacher& teacher, std::vector<std::string> letters,

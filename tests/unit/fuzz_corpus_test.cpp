@@ -28,6 +28,12 @@
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_session
 #include "fuzz/kinovazed_session.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_kinovazed_wire
+#include "fuzz/kinovazed_wire.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_morap_dissector
+#include "fuzz/morap_dissector.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_morap_drive
 #include "fuzz/morap_drive.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -46,11 +52,17 @@
 #define LLVMFuzzerTestOneInput fuzz_parol6_drive
 #include "fuzz/parol6_drive.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_parol6_frames
+#include "fuzz/parol6_frames.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_session
 #include "fuzz/parol6_session.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_splitter
 #include "fuzz/parol6_splitter.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_parol6_wire
+#include "fuzz/parol6_wire.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_rbtscript
 #include "fuzz/rbtscript.cpp"
@@ -82,14 +94,18 @@ constexpr std::array kTargets{FuzzTarget{"capture_reader", fuzz_capture_reader},
                               FuzzTarget{"kinovazed_drive", fuzz_kinovazed_drive},
                               FuzzTarget{"kinovazed_server", fuzz_kinovazed_server},
                               FuzzTarget{"kinovazed_session", fuzz_kinovazed_session},
+                              FuzzTarget{"kinovazed_wire", fuzz_kinovazed_wire},
+                              FuzzTarget{"morap_dissector", fuzz_morap_dissector},
                               FuzzTarget{"morap_drive", fuzz_morap_drive},
                               FuzzTarget{"morap_node", fuzz_morap_node},
                               FuzzTarget{"morap_session", fuzz_morap_session},
                               FuzzTarget{"morap_wire", fuzz_morap_wire},
                               FuzzTarget{"parol6_board", fuzz_parol6_board},
                               FuzzTarget{"parol6_drive", fuzz_parol6_drive},
+                              FuzzTarget{"parol6_frames", fuzz_parol6_frames},
                               FuzzTarget{"parol6_session", fuzz_parol6_session},
                               FuzzTarget{"parol6_splitter", fuzz_parol6_splitter},
+                              FuzzTarget{"parol6_wire", fuzz_parol6_wire},
                               FuzzTarget{"rbtscript", fuzz_rbtscript},
                               FuzzTarget{"telnet_com_port", fuzz_telnet_com_port},
                               FuzzTarget{"texts", fuzz_texts},

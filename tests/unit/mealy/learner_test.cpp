@@ -106,6 +106,29 @@ TEST(Learner, AsksAgainWhatWasAnsweredOtherwiseOnce) {
   EXPECT_FALSE(difference(learned.machine, 0, turnstile(), 0));
 }
 
+/// What was heard wrongly first contradicts all that is heard later.
+TEST(Learner, LearnsAgainWhatWasMadeOfAWrongAnswer) {
+  for (const std::size_t wrong : {0U, 1U, 3U, 5U}) {
+    static std::size_t at;
+    at = wrong;
+    Moody teacher{[](const Word& /*word*/, std::size_t asked) { return asked == at; }};
+    const auto learned = learn(teacher, kTurnstileLetters, {}).value();
+    EXPECT_EQ(learned.contradiction, "") << wrong;
+    EXPECT_TRUE(learned.is_settled) << wrong;
+    EXPECT_FALSE(difference(learned.machine, 0, turnstile(), 0)) << wrong;
+  }
+}
+
+TEST(Learner, LearnsFromATeacherWhoIsOftenWrong) {
+  Moody teacher{[](const Word& word, std::size_t asked) {
+    return (asked * 2'654'435'761U + word.size()) % 97 < 4;
+  }};
+  const auto learned = learn(teacher, kTurnstileLetters, {}).value();
+  EXPECT_EQ(learned.contradiction, "");
+  EXPECT_GT(learned.asked.unsteady, 0U);
+  EXPECT_FALSE(difference(learned.machine, 0, turnstile(), 0));
+}
+
 class Absent final : public Teacher {
  public:
   Outcome<Said> ask(const Word& /*word*/) override {

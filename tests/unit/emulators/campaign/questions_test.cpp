@@ -103,10 +103,58 @@ class FixedStage final : public Stage {
   Outcome<void> renew_models() override { return {}; }
   Outcome<BothHeard> play(const Script& script) override {
     played = script;
-    return BothHeard{};
+    ++times;
+    BothHeard heard;
+    heard.target.said = said;
+    if (times <= times_late) heard.lateness = std::chrono::seconds{1};
+    return heard;
   }
   Script played;
+  std::vector<KeptRecord> said;
+  int times = 0;
+  int times_late = 0;
 };
+
+KeptRecord line_at(Duration time, std::string_view text) {
+  const auto bytes = std::as_bytes(std::span{text});
+  return {.time = Instant{time},
+          .kind = LinkKind::kSession,
+          .direction = Direction::kFromDevice,
+          .id = 1,
+          .bytes = {bytes.begin(), bytes.end()}};
+}
+
+/// Letters of 60 ms, whose first begins after EStop, what the hand does, and holding the arm.
+TEST(Questions, GiveALateReplyToTheLetterItIsFor) {
+  using namespace std::chrono_literals;
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  FixedStage stage;
+  Questions questions{stage, machine_of(device, "server"), device.make_dissector, {}};
+  (void)questions.ask({1, 5});
+  std::vector<Instant> sent;
+  for (const auto& record : stage.played) {
+    if (is_sent(record)) sent.push_back(record.time);
+  }
+  const auto first = sent.at(1).time_since_epoch();
+  stage.said = {line_at(first + 65ms, "Accepted\r\n"), line_at(first + 66ms, "Freezed\r\n"),
+                line_at(first + 100ms, "Rejected\r\n")};
+  EXPECT_EQ(questions.ask({1, 5}).value(), (mealy::Said{"Accepted, Freezed", "Rejected"}));
+  stage.said.back().time += 200ms;  // later than the word
+  EXPECT_EQ(questions.ask({1, 5}).value(), (mealy::Said{"Accepted, Freezed", "Rejected"}));
+  stage.said.pop_back();  // now it is not known which of them is without a reply
+  EXPECT_EQ(questions.ask({1, 5}).value(), (mealy::Said{"", "Accepted, Freezed"}));
+}
+
+TEST(Questions, AskAgainWhatWasAskedLate) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  FixedStage stage;
+  stage.times_late = 2;
+  Questions questions{stage, machine_of(device, "server"), device.make_dissector, {}};
+  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+  EXPECT_EQ(stage.times, 3);
+  stage.times_late = 1'000;  // somebody who is always late is heard all the same
+  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+}
 
 TEST(Questions, BeginWithWhatLeadsBackIfNobodyCanStartTheDeviceAgain) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");

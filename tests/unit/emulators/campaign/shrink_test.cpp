@@ -59,6 +59,41 @@ TEST(Shrink, ShortensMessages) {
   EXPECT_EQ(shorter.front().bytes.size(), 1U);
 }
 
+std::size_t bytes_in(const Script& script) {
+  std::size_t count = 0;
+  for (const auto& record : script) count += record.bytes.size();
+  return count;
+}
+
+TEST(Shrink, PutsTogetherWhatOnlyCountsBytes) {
+  Script script;
+  for (unsigned i = 0; i < 300; ++i) {
+    script.push_back(byte_at(i * 10ms, i));
+    script.back().bytes.assign(40, static_cast<std::byte>(i));
+  }
+  const auto shorter = shrink(
+      script, {}, demo::make_dissector, [](const Script& one) { return bytes_in(one) >= 10'000; },
+      kAlways);
+  EXPECT_LE(shorter.size(), 3U);
+}
+
+TEST(Shrink, LeavesOutAllThatAreAlikeAtOnce) {
+  Script script;
+  for (unsigned i = 0; i < 1'000; ++i) script.push_back(byte_at(i * 1ms, i % 2));
+  int attempts = 0;
+  const auto shorter = shrink(
+      script, {}, demo::make_dissector,
+      [&](const Script& one) {
+        ++attempts;
+        return std::ranges::count_if(one, [](const KeptRecord& record) {
+                 return record.bytes.front() == std::byte{1};
+               }) == 500;
+      },
+      kAlways);
+  EXPECT_EQ(shorter.size(), 500U);
+  EXPECT_LT(attempts, 3'000);
+}
+
 TEST(Shrink, EndsWhenItMayNotGoOn) {
   int attempts = 0;
   const auto script = bytes_up_to(50);
