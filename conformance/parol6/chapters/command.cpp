@@ -67,13 +67,27 @@ CommandFrame tempting(const TelemetryFrame& rest, int code) {
   return frame;
 }
 
-/// Whether frames of one write came to the board as one. A link may cut them, and USB does: its
-/// next packet comes 50 us later, time enough for passes in between.
-bool came_together(BoardBench& board, const std::vector<Answer>& answers) {
+/// Sends two frames in one write, until what the first one asks for has not begun or six times, and
+/// answers what the board says next. None: they never came to it as one. A link may cut them, and
+/// USB does: its next packet comes up to 50 us later, and whether a pass begins in between no host
+/// can tell. A board that acts on both does so each time.
+template <class HasBegun>
+std::optional<Answer> ask_in_one_write(BoardBench& board, const CommandFrame& first,
+                                       const CommandFrame& second, const CommandFrame& undo,
+                                       HasBegun has_begun) {
+  constexpr int kTries = 6;
   constexpr int kTwentyMicroseconds = 14;
-  if (answers.back().timing <= kTwentyMicroseconds) return true;
-  board.leave_open("the link did not deliver two frames at once");
-  return false;
+  for (int i = 1; !board.is_over(); ++i) {
+    const bool is_together =
+        board.ask_together({first, second}).back().timing <= kTwentyMicroseconds;
+    board.pause(BoardBench::kPassTime);
+    const auto answer = board.ask(idle());
+    if (is_together && (i >= kTries || !has_begun(answer))) return answer;
+    if (i >= kTries) break;
+    board.act(undo);
+  }
+  if (!board.is_over()) board.leave_open("the link did not deliver two frames at once");
+  return std::nullopt;
 }
 
 constexpr Speeds kSomeSpeeds{111, -222, 333, -444, 555, -666};
@@ -362,19 +376,21 @@ constexpr Clause kCommandClauses[] = {
          "firmware, vector B10", Profiles::kFirmware, "parol6.loop.each-of-burst"),
     variant("jog", from(kEnabled, Hazard::kMove, "A jog directly before another code never begins.",
                         [](BoardBench& board) {
-                          const auto answers = board.ask_together({a_jog(), with_code(42)});
-                          if (!came_together(board, answers)) return;
-                          board.pause(BoardBench::kPassTime);
+                          const auto answer = ask_in_one_write(
+                              board, a_jog(), with_code(42), idle(),
+                              [](const Answer& said) { return said.speed[kJ5].value != 0; });
+                          if (!answer) return;
                           board.about("a jog and code 42 in one write");
-                          board.expect(board.ask(idle()), "speed.j5", 0);
+                          board.expect(*answer, "speed.j5", 0);
                           board.act(idle());
                         })),
     variant("home",
             from(kEnabled, Hazard::kHome, "A home directly before an idle frame never begins.",
                  [](BoardBench& board) {
-                   const auto answers = board.ask_together({with_code(kHome), idle()});
-                   if (!came_together(board, answers)) return;
-                   board.pause(BoardBench::kPassTime);
+                   const auto answer = ask_in_one_write(
+                       board, with_code(kHome), idle(), with_code(kClearError),
+                       [](const Answer& said) { return said.speed[0].value != 0; });
+                   if (!answer) return;
                    board.about("home and idle in one write");
                    expect_still(board, idle(), kWhile);
                  })),
