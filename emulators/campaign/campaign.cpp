@@ -126,12 +126,14 @@ class Campaign {
     constexpr int kMostParts = 50;
     constexpr int kMostUnanswered = 3;
     int unanswered = 0;
+    bool are_renewed = false;
     for (int left = kMostParts; left > 0; --left) {
       const auto seen = see({});
+      if (!seen && is_refusal(seen.error()) && left > 1) continue;
       if (!seen) return tl::unexpected{seen.error()};
       if (seen->heard.target.end) return tl::unexpected{*seen->heard.target.end};
       if (!seen->symptom) return {};
-      if (left == kMostParts) {  // perhaps only the models have gone astray
+      if (!std::exchange(are_renewed, true)) {  // perhaps only the models have gone astray
         if (auto renewed = stage_.renew_models(); !renewed) return renewed;
         continue;
       }
@@ -180,9 +182,7 @@ class Campaign {
     auto seen = see(script);
     ++state_.cases;
     if (!seen) {
-      if (seen.error().code != ErrorCode::kForbidden) return tl::unexpected{seen.error()};
-      ++state_.refused;
-      return start_again();
+      return give_up(seen.error());
     }
     if (seen->symptom) return look_into(script, *seen->symptom, number);
     history_ = joined(std::move(history_), script, kPause);
@@ -194,12 +194,33 @@ class Campaign {
     return {};
   }
 
+  [[nodiscard]] static bool is_refusal(const Problem& problem) {
+    return problem.code == ErrorCode::kForbidden;
+  }
+
+  /// A case that the guard ended tells nothing.
+  [[nodiscard]] Outcome<void> give_up(const Problem& problem) {
+    if (!is_refusal(problem)) return tl::unexpected{problem};
+    ++state_.refused;
+    return start_again();
+  }
+
   using IsIt = std::function<bool(const Symptom& seen)>;
+
+  /// On devices that are as new; again if the guard ended it, as it does when this program had no
+  /// time.
+  [[nodiscard]] Outcome<Seen> see_afresh(const Script& script) {
+    constexpr int kTimes = 3;
+    for (int left = kTimes;; --left) {
+      if (auto begun = stage_.reset(); !begun) return tl::unexpected{begun.error()};
+      auto seen = see(script);
+      if (seen || !is_refusal(seen.error()) || left == 1) return seen;
+    }
+  }
 
   /// Whether it comes again on devices that are as new.
   [[nodiscard]] Outcome<bool> shows(const Script& script, const IsIt& is_it) {
-    if (auto begun = stage_.reset(); !begun) return tl::unexpected{begun.error()};
-    auto seen = see(script);
+    auto seen = see_afresh(script);
     if (!seen) return tl::unexpected{seen.error()};
     const bool is_there = seen->symptom && is_it(*seen->symptom);
     if (is_there) last_seen_ = *std::move(seen);
@@ -226,7 +247,7 @@ class Campaign {
       script = joined(history_, script, kPause);
       is_there = shows_surely(script, symptom);
     }
-    if (!is_there) return tl::unexpected{is_there.error()};
+    if (!is_there) return give_up(is_there.error());
     if (!*is_there) {
       ++state_.unsettled;
       state_.last_unsettled = symptom.key();
@@ -242,12 +263,12 @@ class Campaign {
     auto seen_first = last_seen_;
     // One that nobody can start again may be left changed for good.
     const auto always = stage_.can_reset() ? Outcome<bool>{false} : shows({}, symptom);
-    if (!always) return tl::unexpected{always.error()};
+    if (!always) return give_up(always.error());
     auto short_one = *always ? Outcome<Script>{script} : made_short(script, symptom);
-    if (!short_one) return tl::unexpected{short_one.error()};
+    if (!short_one) return give_up(short_one.error());
     auto is_sure =
         *always ? Outcome<bool>{false} : shows_surely(*short_one, Symptom{*last_seen_.symptom});
-    if (!is_sure) return tl::unexpected{is_sure.error()};
+    if (!is_sure) return give_up(is_sure.error());
     if (!*is_sure) {  // rather long than wrong
       short_one = std::move(script);
       last_seen_ = std::move(seen_first);
@@ -286,7 +307,7 @@ class Campaign {
     const Shows shows_it = [&](const Script& other) {
       ++attempts;
       auto is_there = shows(other, is_it);
-      if (!is_there && is_there.error().code != ErrorCode::kForbidden) failure = is_there.error();
+      if (!is_there && !is_refusal(is_there.error())) failure = is_there.error();
       return is_there && *is_there;
     };
     auto short_one = shrink(std::move(script), material_.harmless, material_.make_dissector,
@@ -344,7 +365,7 @@ class Campaign {
     const auto heard = stage_.play(whole);
     if (heard) {
       judge_heard(whole, *heard);
-    } else if (heard.error().code != ErrorCode::kForbidden) {
+    } else if (!is_refusal(heard.error())) {
       return tl::unexpected{heard.error()};
     }
     return {};

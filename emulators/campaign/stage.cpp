@@ -96,6 +96,11 @@ Outcome<void> StageOn<Port>::renew_models() {
 
 template <class Port>
 Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
+  // No case keeps silent for long: this program had no time, and the target stands still now, as at
+  // the beginning of each case.
+  if (auto resumed = target_->resume(); !resumed) {
+    return problem(resumed.error().code, "--target", "it cannot be watched over any more");
+  }
   const auto idle = target_->port().now() - last_end_;
   auto played = play_host(target_->port(), script, setup_.how);
   if (!played && played.error().code == ErrorCode::kForbidden) {

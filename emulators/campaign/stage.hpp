@@ -47,7 +47,8 @@ class Stage {
   [[nodiscard]] virtual Outcome<void> renew_models() = 0;
 
   /// Plays it to both, where they are now, and listens a little longer. What ends a link is no
-  /// problem but heard; a problem is that the guard refused something (`kForbidden`).
+  /// problem but heard; a problem is that the guard refused something (`kForbidden`). If it did
+  /// because this program was silent for too long, the next one is played under a new supervisor.
   [[nodiscard]] virtual Outcome<BothHeard> play(const Script& script) = 0;
 };
 

@@ -134,6 +134,41 @@ class NobodyThere final : public Stage {
   }
 };
 
+/// In virtual time, but that the guard ends what is played now and then.
+class RefusingStage final : public Stage {
+ public:
+  RefusingStage(std::unique_ptr<Stage> stage, bool can_reset)
+      : stage_{std::move(stage)}, can_reset_{can_reset} {}
+  Outcome<void> reset() override { return stage_->reset(); }
+  [[nodiscard]] bool can_reset() const override { return can_reset_; }
+  Outcome<void> renew_models() override { return stage_->renew_models(); }
+  Outcome<BothHeard> play(const Script& script) override {
+    constexpr int kOften = 3;
+    if (++times_ % kOften == 1) return problem(ErrorCode::kForbidden, "it", "was refused");
+    return stage_->play(script);
+  }
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  bool can_reset_;
+  int times_ = 0;
+};
+
+TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  for (const bool can_reset : {true, false}) {
+    const auto faulty = emulated("?fault=quirk:steps-lost");
+    auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
+    RefusingStage stage{cli::stage_of(device, faulty, emulated(""), Hand{}, 20ms), can_reset};
+    CampaignState state;
+    const CampaignOptions options{.most_cases = 30, .judging = {device.make_dissector, {}, 20ms}};
+    const auto done = run_campaign(stage, material, options, state, {});
+    ASSERT_TRUE(done) << done.error().hint;
+    EXPECT_EQ(state.cases, 30U);
+    EXPECT_GT(state.refused, 2U);
+  }
+}
+
 TEST(Campaign, DoesNotBeginWithATargetThatAnswersNothing) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
   auto material = cli::material_of(device, emulated(""), emulated(""), 20s).value();

@@ -104,6 +104,7 @@ class FixedStage final : public Stage {
   Outcome<BothHeard> play(const Script& script) override {
     played = script;
     ++times;
+    if (times <= times_refused) return problem(ErrorCode::kForbidden, "it", "was refused");
     BothHeard heard;
     heard.target.said = said;
     if (times <= times_late) heard.lateness = std::chrono::seconds{1};
@@ -113,6 +114,7 @@ class FixedStage final : public Stage {
   std::vector<KeptRecord> said;
   int times = 0;
   int times_late = 0;
+  int times_refused = 0;
 };
 
 KeptRecord line_at(Duration time, std::string_view text) {
@@ -154,6 +156,16 @@ TEST(Questions, AskAgainWhatWasAskedLate) {
   EXPECT_EQ(stage.times, 3);
   stage.times_late = 1'000;  // somebody who is always late is heard all the same
   EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+}
+
+TEST(Questions, AskAgainWhatTheGuardEnded) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  FixedStage stage;
+  stage.times_refused = 2;
+  Questions questions{stage, machine_of(device, "server"), device.make_dissector, {}};
+  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+  stage.times_refused = 1'000;
+  EXPECT_EQ(questions.ask({1}).error().code, ErrorCode::kForbidden);
 }
 
 TEST(Questions, BeginWithWhatLeadsBackIfNobodyCanStartTheDeviceAgain) {
