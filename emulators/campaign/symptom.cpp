@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "emulators/campaign/talk.hpp"
+#include "harness/compare/likeness.hpp"
 #include "harness/compare/recording_diff.hpp"
 #include "harness/wire/brief.hpp"
 
@@ -125,6 +126,14 @@ class Judge {
   }
 
  private:
+  /// Where nobody knows exactly when the target got something: the model comes past that.
+  [[nodiscard]] bool is_only_early_or_late(const RecordingDifference& difference,
+                                           const RecordedMessages& before) const {
+    if (judging_.rules.time_tolerance == Duration{}) return false;
+    return Likeness{judging_.rules}.is_come_past_by(*difference.after,
+                                                    before.lanes().at(difference.lane));
+  }
+
   [[nodiscard]] std::vector<std::pair<Instant, std::string>> all_done() const {
     std::vector<std::pair<Instant, std::string>> all{{Instant::min(), "the beginning"}};
     for (const auto& record : script_) {
@@ -143,6 +152,7 @@ class Judge {
     for (const auto& difference : diff(before, after, judging_.rules, aligning_)) {
       const bool is_one_sided = difference.change != Change::kChanged;
       if (is_one_sided && difference.time() > end + judging_.horizon) continue;
+      if (!is_one_sided && is_only_early_or_late(difference, before)) continue;
       const auto& message = difference.before != nullptr ? *difference.before : *difference.after;
       auto symptom =
           excused({.asked = asked_before(script_, difference.time(), judging_.make_dissector),

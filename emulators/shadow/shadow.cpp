@@ -292,7 +292,7 @@ bool Shadow::match_first(Lane& lane, Instant now) {
   if (like == twin.end()) {
     tell(lane, Change::kExtra, &one, nullptr);
   } else {
-    if (likeness.is_in_time(one, *like) && is_on_its_way(lane, one)) {
+    if (likeness.is_in_time(one, *like) && likeness.is_come_past_by(one, lane.paired, twin)) {
       agree(lane, one.message.time);
     } else {
       tell(lane, Change::kChanged, &one, &*like, likeness.differences(one, *like));
@@ -301,20 +301,6 @@ bool Shadow::match_first(Lane& lane, Instant now) {
   }
   said.pop_front();
   return true;
-}
-
-/// Whether the twin comes past what is said there, before or after, within the tolerance.
-bool Shadow::is_on_its_way(const Lane& lane, const RecordedMessage& one) const {
-  const Likeness likeness{rules_};
-  std::vector<const RecordedMessage*> near;
-  for (const auto* const some : {&lane.paired, &lane.twin.said}) {
-    for (const auto& other : *some) {
-      if (other.message.name == one.message.name && likeness.is_in_time(one, other)) {
-        near.push_back(&other);
-      }
-    }
-  }
-  return likeness.is_among(one, near);
 }
 
 void Shadow::take_pair(Lane& lane, std::deque<RecordedMessage>::iterator twin) {

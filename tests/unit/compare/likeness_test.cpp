@@ -23,11 +23,10 @@ RecordedMessage telemetry(std::int32_t position, std::uint8_t homed) {
   return {.message = found.at(0), .note = {}};
 }
 
-class LikenessAmongTwo : public testing::Test {
+class LikenessBetweenTwo : public testing::Test {
  protected:
-  [[nodiscard]] bool is_among(const RecordedMessage& one) const {
-    const std::vector<const RecordedMessage*> others{&before, &after};
-    return Likeness{rules}.is_among(one, others);
+  [[nodiscard]] bool is_come_past(const RecordedMessage& one) const {
+    return Likeness{rules}.is_come_past_by(one, std::vector{before}, std::vector{after});
   }
 
   ComparisonRules rules;
@@ -35,26 +34,36 @@ class LikenessAmongTwo : public testing::Test {
   RecordedMessage after = telemetry(200, 0x43);
 };
 
-TEST_F(LikenessAmongTwo, ANumberLiesBetweenThem) {
-  for (const auto position : {100, 101, 150, 200}) EXPECT_TRUE(is_among(telemetry(position, 0x03)));
-  for (const auto position : {-150, 99, 201}) EXPECT_FALSE(is_among(telemetry(position, 0x03)));
+TEST_F(LikenessBetweenTwo, ANumberLiesBetweenThem) {
+  for (const auto position : {100, 101, 150, 200})
+    EXPECT_TRUE(is_come_past(telemetry(position, 0x03)));
+  for (const auto position : {-150, 99, 201}) EXPECT_FALSE(is_come_past(telemetry(position, 0x03)));
 }
 
-TEST_F(LikenessAmongTwo, AStateIsThatOfOneOfThem) {
-  EXPECT_TRUE(is_among(telemetry(150, 0x43)));
-  EXPECT_FALSE(is_among(telemetry(150, 0x23))) << "between 0x03 and 0x43, and what neither says";
+TEST_F(LikenessBetweenTwo, AStateIsThatOfOneOfThem) {
+  EXPECT_TRUE(is_come_past(telemetry(150, 0x43)));
+  EXPECT_FALSE(is_come_past(telemetry(150, 0x23)))
+      << "between 0x03 and 0x43, and what neither says";
 }
 
-TEST_F(LikenessAmongTwo, AToleranceHoldsForEachOfThem) {
+TEST_F(LikenessBetweenTwo, AToleranceHoldsForEachOfThem) {
   rules.fields.push_back({.message = {}, .name = "position.j1", .tolerance = 5});
-  EXPECT_TRUE(is_among(telemetry(205, 0x03)));
-  EXPECT_FALSE(is_among(telemetry(206, 0x03)));
+  EXPECT_TRUE(is_come_past(telemetry(205, 0x03)));
+  EXPECT_FALSE(is_come_past(telemetry(206, 0x03)));
 }
 
-TEST_F(LikenessAmongTwo, NothingIsAmongOthersOfAnotherNameOrNone) {
-  EXPECT_FALSE((Likeness{rules}.is_among(before, {})));
+TEST_F(LikenessBetweenTwo, WhatIsTooEarlyOrTooLateDoesNotCount) {
+  rules.time_tolerance = 10ms;
+  before.message.time -= 10ms;
+  EXPECT_TRUE(is_come_past(telemetry(150, 0x03)));
+  before.message.time -= 1ms;
+  EXPECT_FALSE(is_come_past(telemetry(150, 0x03)));
+}
+
+TEST_F(LikenessBetweenTwo, NothingIsAmongOthersOfAnotherNameOrNone) {
+  EXPECT_FALSE(Likeness{rules}.is_come_past_by(before, std::vector<RecordedMessage>{}));
   after.message.name = "other";
-  EXPECT_FALSE(is_among(telemetry(150, 0x03)));
+  EXPECT_FALSE(is_come_past(telemetry(150, 0x03)));
 }
 
 }  // namespace
