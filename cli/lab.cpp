@@ -225,12 +225,11 @@ Outcome<std::vector<LabDevice>> lab_of_bus(Devices devices, const ExecOptions& o
   });
 }
 
-Exit exec(Devices devices, ExecOptions options) {
+Exit exec(Devices devices, const ExecOptions& options) {
   const bool is_bus = !options.nodes.empty();
-  if (is_bus && !options.lab.empty()) {  // it was the first word of the program
-    options.program.insert(options.program.begin(), std::exchange(options.lab, {}));
-  }
-  if (options.program.empty()) {
+  auto program = options.program;
+  if (is_bus && !options.lab.empty()) program.insert(program.begin(), options.lab);
+  if (program.empty()) {
     return report(is_bus ? Problem{ErrorCode::kBadValue, "PROGRAM is missing", "write it behind --"}
                          : Problem{ErrorCode::kBadValue, "LAB.toml or PROGRAM is missing",
                                    "write armjig lab exec LAB.toml -- PROGRAM, or --i2c NODES.toml "
@@ -244,7 +243,7 @@ Exit exec(Devices devices, ExecOptions options) {
   if (!lab) return report(lab.error());
   const auto code =
       ServedDevices::open(lab->to_serve()).and_then([&](const auto& served) -> Outcome<int> {
-        return run_program(options.program, served->environment());
+        return run_program(program, served->environment());
       });
   if (!code) return report(code.error());
   const auto ended = static_cast<Exit>(*code);

@@ -284,8 +284,8 @@ bool is_usb_text(std::string_view text) noexcept {
          std::ranges::all_of(text, [](char c) { return c > ' ' && c <= '~'; });
 }
 
-std::function<void(std::string_view line)> log_as(std::string name) {
-  return [who = name.empty() ? "" : name + ": "](std::string_view line) {
+std::function<void(std::string_view line)> log_as(std::string_view name) {
+  return [who = name.empty() ? std::string{} : fmt::format("{}: ", name)](std::string_view line) {
     fmt::print(stderr, "armjig: {}{}\n", who, line);
   };
 }
@@ -323,8 +323,8 @@ Outcome<Serving> parse_listen(const std::string& listen, const Device& device) {
   return serving;
 }
 
-Outcome<std::unique_ptr<ServedDevices>> ServedDevices::open(std::vector<ToServe> devices,
-                                                            std::function<void()> when_over) {
+Outcome<std::unique_ptr<ServedDevices>> ServedDevices::open(
+    std::vector<ToServe> devices, const std::function<void()>& when_over) {
   auto opened = std::make_unique<ServedDevices>();
   const bool is_only = devices.size() == 1;
   for (auto& [hosted, serving] : devices) {

@@ -55,7 +55,7 @@ struct Serving {
 };
 
 /// A log on standard error; its lines begin with the name unless that is empty.
-[[nodiscard]] std::function<void(std::string_view line)> log_as(std::string name);
+[[nodiscard]] std::function<void(std::string_view line)> log_as(std::string_view name);
 
 /// A stream has a pseudo-terminal where a board is. `name` is what it is called. Requires that the
 /// device can be in these places and is in one.
@@ -79,7 +79,7 @@ class ServedDevices {
   /// Problems: those of `Host::open` and `DeviceNodes`; with several devices each begins with the
   /// name.
   [[nodiscard]] static Outcome<std::unique_ptr<ServedDevices>> open(
-      std::vector<ToServe> devices, std::function<void()> when_over = [] {});
+      std::vector<ToServe> devices, const std::function<void()>& when_over = [] {});
 
   struct One {
     Serving serving;

@@ -118,9 +118,9 @@ std::int64_t edge(Dice& dice) {
 
 /// What is beside the number that is there, or has something to do with it.
 std::int64_t beside(Dice& dice, std::int64_t value) {
-  const std::array<std::int64_t, 6> kOthers{value + 1, value - 1, -value,
-                                            value / 2, value ^ 1, value * 2};
-  return dice.one_of(kOthers);
+  const std::array<std::int64_t, 6> others{value + 1, value - 1, -value,
+                                           value / 2, value ^ 1, value * 2};
+  return dice.one_of(others);
 }
 
 /// A byte that readers of text or of numbers may take otherwise.
@@ -159,7 +159,7 @@ void spoil_bytes_of(Dice& dice, const Field& field, std::span<std::byte> message
 
 /// A number as programs write it, and as some do not expect it.
 std::string number_as_text(Dice& dice) {
-  const auto number = std::to_string(dice.one_in(2) ? edge(dice) : sessions::odd_number(dice));
+  auto number = std::to_string(dice.one_in(2) ? edge(dice) : sessions::odd_number(dice));
   if (!dice.one_in(8)) return number;
   constexpr std::array<std::string_view, 5> kBefore{"+", "0", " ", "0x", "--"};
   constexpr std::array<std::string_view, 5> kAfter{".0", " ", "e1", "\v", ""};

@@ -113,7 +113,7 @@ class Shrinking {
     int left = kMostKinds;
     for (std::size_t i = 0; i < script_.size() && left > 0 && may_go_on_(); ++i) {
       const auto begin = script_.begin() + static_cast<std::ptrdiff_t>(i);
-      const auto one = *begin;
+      const auto& one = *begin;
       const auto is_alike = [&one](const KeptRecord& other) {
         return other.kind == one.kind && other.direction == one.direction && other.id == one.id &&
                other.bytes == one.bytes && other.details == one.details;

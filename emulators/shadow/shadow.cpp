@@ -303,7 +303,7 @@ bool Shadow::match_first(Lane& lane, Instant now) {
   return true;
 }
 
-void Shadow::take_pair(Lane& lane, std::deque<RecordedMessage>::iterator twin) {
+void Shadow::take_pair(Lane& lane, const std::deque<RecordedMessage>::iterator& twin) {
   while (!lane.paired.empty() &&
          lane.paired.front().message.time + 2 * rules_.time_tolerance < twin->message.time) {
     lane.paired.pop_front();

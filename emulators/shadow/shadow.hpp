@@ -88,7 +88,7 @@ class Shadow final : public Overhearer {
   void take_sent(Device& device);
   void match(Lane& lane, Instant now);
   bool match_first(Lane& lane, Instant now);
-  void take_pair(Lane& lane, std::deque<RecordedMessage>::iterator twin);
+  void take_pair(Lane& lane, const std::deque<RecordedMessage>::iterator& twin);
   void agree(Lane& lane, Instant time);
   void tell(Lane& lane, Change change, const RecordedMessage* device, const RecordedMessage* twin,
             std::vector<std::string> what = {});

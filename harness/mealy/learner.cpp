@@ -467,7 +467,7 @@ class Learner {
 
 }  // namespace
 
-Outcome<Learned> learn(Teacher& teacher, std::vector<std::string> letters,
+Outcome<Learned> learn(Teacher& teacher, const std::vector<std::string>& letters,
                        const LearnOptions& options) {
   Memory memory{teacher, letters, options};
   for (;;) {

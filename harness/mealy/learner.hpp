@@ -65,7 +65,7 @@ struct Learned {
 /// again. Else the teacher does not answer the same each time.
 ///
 /// Problems: those of the teacher.
-[[nodiscard]] Outcome<Learned> learn(Teacher& teacher, std::vector<std::string> letters,
+[[nodiscard]] Outcome<Learned> learn(Teacher& teacher, const std::vector<std::string>& letters,
                                      const LearnOptions& options);
 
 }  // namespace armjig::mealy
