@@ -104,10 +104,11 @@ foreach(target serial:/dev/ttyACM0 usb:0483:5740)
 endforeach()
 add_test(NAME soak.kernel_verdicts COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR} all)
 set_tests_properties(soak.kernel_verdicts PROPERTIES LABELS soak TIMEOUT 7200 SKIP_RETURN_CODE 77)
-foreach(mode reconnect others)
+foreach(mode reconnect others usbip)
   add_test(NAME soak.kernel_${mode} COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR} ${mode})
 endforeach()
-set_tests_properties(soak.kernel_reconnect soak.kernel_others PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)
+set_tests_properties(soak.kernel_reconnect soak.kernel_others soak.kernel_usbip
+                     PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)
 add_test(NAME soak.kernel_round_trip COMMAND ${PROJECT_SOURCE_DIR}/tests/kernel/run ${PROJECT_BINARY_DIR}
                                              roundtrip)
 set_tests_properties(soak.kernel_round_trip PROPERTIES LABELS soak TIMEOUT 600 SKIP_RETURN_CODE 77)
