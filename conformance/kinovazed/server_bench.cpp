@@ -194,9 +194,12 @@ void ServerBench::expect_end() {
 void ServerBench::expect_quiet(Duration time) {
   const auto word = next_word(time);
   if (word) return fail_by("nothing but beats", *word);
-  if (!is_deaf() && client().has_ended) {
-    fail_by_silence(behind("an open connection"), "the end of the connection");
-  }
+  expect_connected();
+}
+
+void ServerBench::expect_connected() {
+  if (is_deaf() || !client().has_ended) return;
+  fail_by_silence(behind("an open connection"), "the end of the connection");
 }
 
 void ServerBench::expect_no_message(Duration time) {
@@ -386,6 +389,7 @@ void ServerBench::expect_beat(int flags) {
 std::size_t ServerBench::count_beats(Duration time) {
   client().beats.clear();
   pause(time);
+  expect_connected();
   return client().beats.size();
 }
 

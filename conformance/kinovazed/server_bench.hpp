@@ -185,6 +185,8 @@ class ServerBench final : public PortBench<SessionSource> {
   void initialize();
   void remember(std::string_view arrow, std::string_view text);
   void fail_by_no_line(std::string wanted, Duration time);
+  /// The finding, if the connection has ended.
+  void expect_connected();
   [[nodiscard]] std::string silence_of(Duration time);
 
   std::vector<Client> clients_;
