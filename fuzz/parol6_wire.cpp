@@ -6,12 +6,14 @@
 // telemetry.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "fuzz/require.hpp"
 #include "harness/wire/parol6/frame.hpp"
+#include "harness/wire/parol6/readings.hpp"
 
 namespace armjig::fuzz::parol6_frame {
 namespace {
@@ -23,6 +25,32 @@ std::array<std::byte, size> filled(Bytes data) {
   std::array<std::byte, size> body{};
   std::copy_n(data.begin(), std::min(size, data.size()), body.begin());
   return body;
+}
+
+/// Each bit of a body means something.
+template <std::size_t size, class Decode>
+void check_bit(const std::array<std::byte, size>& body, std::size_t bit, Decode decode) {
+  auto other = body;
+  other[bit / 8 % size] ^= std::byte{1} << bit % 8;
+  require(!(decode(other) == decode(body)), "other bytes are another frame");
+}
+
+void check_readings(const TelemetryFrame& frame) {
+  const auto all = is_homed(frame);
+  bool each = true;
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) each = each && is_homed(frame, joint);
+  require(all == each, "an arm is homed if each joint is");
+  auto other = frame;
+  other.io ^= io_flag::kEstopReleased;
+  require(is_estop_pressed(other) != is_estop_pressed(frame), "its bit says it of the stop");
+  require(object_of(frame.gripper.status) <= GripperObject::kAtPosition, "there are four of them");
+  require(interval_of(frame.timing) < std::chrono::milliseconds{94}, "the timing field wraps");
+}
+
+void check_command(const CommandFrame& frame) {
+  const bool is_homing_or_demo = frame.command == Command::kHome || frame.command == Command::kDemo;
+  require(!moves(frame.command) || ends_homing(frame.command) != is_homing_or_demo,
+          "what moves joints ends a homing, or is one");
 }
 
 void check_frames(Bytes data) {
@@ -37,6 +65,11 @@ void check_frames(Bytes data) {
   require(std::ranges::equal(body_of(telemetry_bytes), said), "encode(decode(x)) == x, telemetry");
   require(decode_telemetry(body_of(telemetry_bytes)) == telemetry,
           "decode(encode(x)) == x, telemetry");
+  const auto bit = data.empty() ? 0 : 8 * data.size() + std::to_integer<std::size_t>(data.back());
+  check_bit(asked, bit, decode_command);
+  check_bit(said, bit, decode_telemetry);
+  check_command(command);
+  check_readings(telemetry);
 }
 
 }  // namespace

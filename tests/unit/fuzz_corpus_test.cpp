@@ -19,6 +19,12 @@
 #define LLVMFuzzerTestOneInput fuzz_capture_reader
 #include "fuzz/capture_reader.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_dissectors
+#include "fuzz/dissectors.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_kinovazed_arm
+#include "fuzz/kinovazed_arm.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_drive
 #include "fuzz/kinovazed_drive.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -31,9 +37,6 @@
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_wire
 #include "fuzz/kinovazed_wire.cpp"
 #undef LLVMFuzzerTestOneInput
-#define LLVMFuzzerTestOneInput fuzz_morap_dissector
-#include "fuzz/morap_dissector.cpp"
-#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_morap_drive
 #include "fuzz/morap_drive.cpp"
 #undef LLVMFuzzerTestOneInput
@@ -45,6 +48,9 @@
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_morap_wire
 #include "fuzz/morap_wire.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_parol6_arm
+#include "fuzz/parol6_arm.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_board
 #include "fuzz/parol6_board.cpp"
@@ -60,6 +66,9 @@
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_splitter
 #include "fuzz/parol6_splitter.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_parol6_way
+#include "fuzz/parol6_way.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_parol6_wire
 #include "fuzz/parol6_wire.cpp"
@@ -91,20 +100,23 @@ struct FuzzTarget {
 std::ostream& operator<<(std::ostream& out, const FuzzTarget& target) { return out << target.name; }
 
 constexpr std::array kTargets{FuzzTarget{"capture_reader", fuzz_capture_reader},
+                              FuzzTarget{"dissectors", fuzz_dissectors},
+                              FuzzTarget{"kinovazed_arm", fuzz_kinovazed_arm},
                               FuzzTarget{"kinovazed_drive", fuzz_kinovazed_drive},
                               FuzzTarget{"kinovazed_server", fuzz_kinovazed_server},
                               FuzzTarget{"kinovazed_session", fuzz_kinovazed_session},
                               FuzzTarget{"kinovazed_wire", fuzz_kinovazed_wire},
-                              FuzzTarget{"morap_dissector", fuzz_morap_dissector},
                               FuzzTarget{"morap_drive", fuzz_morap_drive},
                               FuzzTarget{"morap_node", fuzz_morap_node},
                               FuzzTarget{"morap_session", fuzz_morap_session},
                               FuzzTarget{"morap_wire", fuzz_morap_wire},
+                              FuzzTarget{"parol6_arm", fuzz_parol6_arm},
                               FuzzTarget{"parol6_board", fuzz_parol6_board},
                               FuzzTarget{"parol6_drive", fuzz_parol6_drive},
                               FuzzTarget{"parol6_frames", fuzz_parol6_frames},
                               FuzzTarget{"parol6_session", fuzz_parol6_session},
                               FuzzTarget{"parol6_splitter", fuzz_parol6_splitter},
+                              FuzzTarget{"parol6_way", fuzz_parol6_way},
                               FuzzTarget{"parol6_wire", fuzz_parol6_wire},
                               FuzzTarget{"rbtscript", fuzz_rbtscript},
                               FuzzTarget{"telnet_com_port", fuzz_telnet_com_port},
