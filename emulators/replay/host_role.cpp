@@ -73,6 +73,8 @@ class Clock {
   [[nodiscard]] Instant recorded(Instant now) const {
     return Instant{scaled(now.time_since_epoch() - base_, speed_)};
   }
+  /// What follows is due so much later.
+  void stand_still(Duration time) { base_ += time; }
 
  private:
   static Duration scaled(Duration time, double factor) {
@@ -107,7 +109,7 @@ class Playing {
   bool touch(Endpoint& port, const KeptRecord& record) {
     bool is_done = false;
     for (const auto& [name, value] : touches_of(record, touches_of_)) {
-      if (port.touch(name, value) || (by_hand_ && by_hand_(name, value))) is_done = true;
+      if (port.touch(name, value) || do_by_hand(port, name, value)) is_done = true;
     }
     if (is_done) ++played_.sent;
     return is_done;
@@ -119,6 +121,15 @@ class Playing {
   Played played_;
 
  private:
+  /// Nobody knows how long it takes, so what follows leaves as much later.
+  bool do_by_hand(const Endpoint& port, std::string_view name, std::int64_t value) {
+    if (!by_hand_) return false;
+    const auto begun = port.now();
+    const bool is_done = by_hand_(name, value);
+    clock_.stand_still(port.now() - begun);
+    return is_done;
+  }
+
   TouchesOf touches_of_;
   const std::function<bool(std::string_view, std::int64_t)>& by_hand_;
 };

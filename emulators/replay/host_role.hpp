@@ -29,7 +29,8 @@ struct PlayHow {
   /// after it.
   Duration lead{};
   Duration trailing{};  ///< listens so much longer than the recording lasts
-  /// Does beside the link what the port cannot; false: nobody can. Empty: nobody does.
+  /// Does beside the link what the port cannot; false: nobody can. Empty: nobody does. The clock of
+  /// the recording stands still as long as it takes.
   std::function<bool(std::string_view input, std::int64_t value)> by_hand{};
 };
 
