@@ -205,7 +205,9 @@ std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions
 std::unique_ptr<campaign::Stage> stage_alone(const Device& device, const RigOptions& how,
                                              const Hand& hand, double speed) {
   return stage_with(device, how, hand, {}, [&](const auto& /*kind*/, auto& setup) {
-    setup.how.speed = how.target.is_emulated() ? 1 : speed;
+    if (how.target.is_emulated()) return;
+    setup.how.speed = speed;
+    setup.how.after_late = AfterLate::kShifted;
   });
 }
 

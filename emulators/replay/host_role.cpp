@@ -90,10 +90,17 @@ class Clock {
 class Playing {
  public:
   Playing(Instant now, Records records, const PlayHow& how)
-      : clock_{now, records, how.speed}, touches_of_{how.touches_of}, by_hand_{how.by_hand} {}
+      : clock_{now, records, how.speed},
+        touches_of_{how.touches_of},
+        by_hand_{how.by_hand},
+        after_late_{how.after_late} {}
   [[nodiscard]] Played take() { return std::move(played_); }
-  /// The record that was played last has passed.
-  void note_passed(Instant now) { played_.passed.push_back(clock_.recorded(now)); }
+  /// That record, the last one that was played, has passed.
+  void note_passed(const KeptRecord& record, Instant now) {
+    played_.passed.push_back(clock_.recorded(now));
+    const auto due = clock_.due(record.time);
+    if (after_late_ == AfterLate::kShifted && now > due) clock_.stand_still(now - due);
+  }
 
  protected:
   Result<void> expect(KeptRecord record) {
@@ -132,6 +139,7 @@ class Playing {
 
   TouchesOf touches_of_;
   const std::function<bool(std::string_view, std::int64_t)>& by_hand_;
+  AfterLate after_late_;
 };
 
 class StreamPlaying : public Playing {
@@ -504,7 +512,7 @@ Outcome<Played> play(Kind playing, const Endpoint& port, Records records, const 
   };
   for (const auto& record : records) {
     if (const auto played = playing.play(record); !played) return ended(played.error());
-    playing.note_passed(port.now());
+    playing.note_passed(record, port.now());
   }
   if (!records.empty()) {
     const auto heard = playing.listen_until(records.back().time + how.trailing);
