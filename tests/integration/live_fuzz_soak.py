@@ -33,9 +33,9 @@ WARM_UP = 120  # seconds, in which memory is used for the first time
 MOST_GROWTH = 1024  # KiB
 AT_ONCE = 4
 
-# How each is hosted, and the input that starts it again.
-DEVICES = {"parol6": (["--link", "{folder}/arm"], "power"), "kinovazed": (["--tcp", "0"], "restart"),
-           "morap": ([], "power")}
+# How each is hosted, the input that starts it again, and for how many seconds it does not answer then.
+DEVICES = {"parol6": (["--link", "{folder}/arm"], "power", 0.8), "kinovazed": (["--tcp", "0"], "restart", 0),
+           "morap": ([], "power", 0)}
 
 
 class Hosted:
@@ -43,7 +43,7 @@ class Hosted:
 
     def __init__(self, device, folder, *options):
         self.device, self.folder = device, pathlib.Path(folder)
-        place, restart = DEVICES[device]
+        place, restart, pause = DEVICES[device]
         self.inputs, self.answers = self.folder / "inputs", self.folder / "answers"
         for path in (self.inputs, self.answers):
             os.mkfifo(path)
@@ -55,7 +55,7 @@ class Hosted:
         os.close(inputs)
         self.environment = dict(os.environ)
         self.target = self.find()
-        self.restart = self.hand(restart, "1")
+        self.restart = self.hand(restart, "1", pause)
 
     def find(self):
         line = self.process.stdout.readline()
@@ -69,9 +69,9 @@ class Hosted:
             return "i2c:/dev/i2c-1"
         return line.split()[1]
 
-    def hand(self, name, value):
-        """A command for the shell that returns when the device has it: it says so."""
-        return f'h() {{ echo "{name} {value}" >{self.inputs} && read -r said <{self.answers}; }}; h'
+    def hand(self, name, value, pause):
+        """A command for the shell that returns when the device has it, which says so, and answers again."""
+        return f'h() {{ echo "{name} {value}" >{self.inputs} && read -r said <{self.answers} && sleep {pause}; }}; h'
 
     def memory(self):
         """In KiB."""
