@@ -176,7 +176,8 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
                           .has_hands = how.target.is_emulated(),
                           .has_operations = how.target.is_emulated(),
                           .longest = longest,
-                          .least_gap = how.target.is_emulated() ? Duration{} : kLeastGapLive};
+                          .least_gap = how.target.is_emulated() ? Duration{} : kLeastGapLive,
+                          .works_on = how.target.is_emulated() ? nullptr : device.fuzz.works_on};
         auto probe = kind.make_probe(rig->port(), model.target.text);
         if (!probe) return tl::unexpected{probe.error()};
         const auto request = (*probe)->request();

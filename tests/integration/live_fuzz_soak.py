@@ -16,6 +16,8 @@ import json
 import os
 import pathlib
 import re
+import shlex
+import signal
 import subprocess
 import sys
 import tempfile
@@ -33,9 +35,17 @@ WARM_UP = 120  # seconds, in which memory is used for the first time
 MOST_GROWTH = 1024  # KiB
 AT_ONCE = 4
 
-# How each is hosted, the input that starts it again, and for how many seconds it does not answer then.
-DEVICES = {"parol6": (["--link", "{folder}/arm"], "power", 0.8), "kinovazed": (["--tcp", "0"], "restart", 0),
-           "morap": ([], "power", 0)}
+# How each is hosted, and the input that makes it as new. None does that to the axes and fingers of a board, so its
+# program is started again.
+DEVICES = {"parol6": (["--link", "{folder}/arm"], None), "kinovazed": (["--tcp", "0"], "restart"),
+           "morap": ([], "power")}
+RESTART = """
+kill $(cat {folder}/pid)
+while [ -L {folder}/arm ]; do sleep 0.01; done
+{command} </dev/null >/dev/null 2>&1 &
+echo $! >{folder}/pid
+while ! [ -L {folder}/arm ]; do sleep 0.01; done
+"""
 
 
 class Hosted:
@@ -43,19 +53,20 @@ class Hosted:
 
     def __init__(self, device, folder, *options):
         self.device, self.folder = device, pathlib.Path(folder)
-        place, restart, pause = DEVICES[device]
+        place, restart = DEVICES[device]
         self.inputs, self.answers = self.folder / "inputs", self.folder / "answers"
         for path in (self.inputs, self.answers):
             os.mkfifo(path)
         # Open for both directions, so that nobody waits for the other end, and none of them sees an end.
         inputs, self.log = (os.open(path, os.O_RDWR) for path in (self.inputs, self.answers))
-        self.process = subprocess.Popen(
-            [ARMJIG, "emulate", device, *(word.format(folder=folder) for word in place), *options],
-            stdin=inputs, stdout=subprocess.PIPE, stderr=self.log, text=True)
+        command = [ARMJIG, "emulate", device, *(word.format(folder=folder) for word in place), *options]
+        self.process = subprocess.Popen(command, stdin=inputs, stdout=subprocess.PIPE, stderr=self.log, text=True)
         os.close(inputs)
+        self.pid = self.folder / "pid"
+        self.pid.write_text(f"{self.process.pid}\n")
         self.environment = dict(os.environ)
         self.target = self.find()
-        self.restart = self.hand(restart, "1", pause)
+        self.restart = self.input(restart) if restart else self.script(command)
 
     def find(self):
         line = self.process.stdout.readline()
@@ -69,9 +80,14 @@ class Hosted:
             return "i2c:/dev/i2c-1"
         return line.split()[1]
 
-    def hand(self, name, value, pause):
-        """A command for the shell that returns when the device has it, which says so, and answers again."""
-        return f'h() {{ echo "{name} {value}" >{self.inputs} && read -r said <{self.answers} && sleep {pause}; }}; h'
+    def input(self, name):
+        """A command for the shell that returns when the device has it, which says so."""
+        return f"echo {name} 1 >{self.inputs}; read -r said <{self.answers}; true"
+
+    def script(self, command):
+        path = self.folder / "restart"
+        path.write_text(RESTART.format(folder=self.folder, command=shlex.join(command)))
+        return f"sh {path}"
 
     def memory(self):
         """In KiB."""
@@ -80,11 +96,12 @@ class Hosted:
 
     def campaign(self, report, *arguments):
         return subprocess.run(
-            [ARMJIG, "fuzz", self.device, "--target", self.target, "--allow", "all", "--restart", self.restart,
-             "--json", str(report), "--out", str(self.folder / "out"), *arguments], capture_output=True, text=True, check=False, env=self.environment)
+            [ARMJIG, "fuzz", self.device, "--target", self.target, "--allow", "all", "--json", str(report), "--out",
+             str(self.folder / "out"), *arguments], capture_output=True, text=True, check=False, env=self.environment)
 
     def end(self):
-        self.process.terminate()
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(int(self.pid.read_text()), signal.SIGTERM)
         self.process.communicate()
         os.close(self.log)
 
@@ -137,7 +154,8 @@ def is_real(device, finding):
 def find_rare(device, name):
     with hosted(device, "--set", f"fault=rare:{name}") as one:
         report = one.folder / "report.json"
-        done = one.campaign(report, *known_of(device), "--max-time", str(RARE_SECONDS), "--fail-fast")
+        done = one.campaign(report, "--restart", one.restart, *known_of(device), "--max-time",
+                            str(RARE_SECONDS), "--fail-fast")
         rows = rows_in(report, done)
         found = failed(rows)
         if not found:
@@ -173,7 +191,9 @@ def sound_one(device):
         watching = threading.Thread(target=watch, args=(one, sizes, is_over))
         watching.start()
         report = one.folder / "report.json"
-        done = one.campaign(report, *known_of(device), "--max-time", str(SOUND_SECONDS))
+        # A program that is started again does not grow.
+        restart = ["--restart", one.restart] if DEVICES[device][1] else []
+        done = one.campaign(report, *restart, *known_of(device), "--max-time", str(SOUND_SECONDS))
         is_over.set()
         watching.join()
         found = failed(rows_in(report, done))
@@ -188,7 +208,7 @@ def sound_one(device):
 def known_one(device):
     with hosted(device) as one:
         report = one.folder / "report.json"
-        done = one.campaign(report, "--max-time", str(KNOWN_SECONDS))
+        done = one.campaign(report, "--restart", one.restart, "--max-time", str(KNOWN_SECONDS))
         found = failed(rows_in(report, done))
         print(f"{device}: {len(found)} findings without what is known; {load()}", flush=True)
         for row in found:
