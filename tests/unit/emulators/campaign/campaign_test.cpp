@@ -169,6 +169,24 @@ TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
   }
 }
 
+TEST(Campaign, LeavesANodeTheTicksThatItNeedsForParameters) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
+  auto material = cli::material_of(device, emulated(""), emulated(""), 6s).value();
+  material.works_on = device.fuzz.works_on;
+  Author author{material};
+  std::size_t followed = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto script = author.draw(seed, {});
+    for (std::size_t i = 1; i < script.size(); ++i) {
+      const auto& before = script[i - 1];
+      if (!is_sent(before) || device.fuzz.works_on(before.bytes) == Duration{}) continue;
+      ++followed;
+      EXPECT_GE(script[i].time - before.time, 20ms);
+    }
+  }
+  EXPECT_GT(followed, 100U);
+}
+
 /// A sound device that becomes another one for good, and that nobody can start again.
 class ChangingStage final : public Stage {
  public:
