@@ -6,9 +6,11 @@ WHAT is one of
   rare   each of the defects that suites do not see (rare_defects_soak.py) is found within five minutes
   sound  campaigns of 20 minutes side by side, with the files of known defects: no finding, and the emulators do not
          grow by a mebibyte
-  known  10 minutes side by side without these files: what is known is found, each defect once
+  known  10 minutes side by side without these files: what is found, to be compared with what is known; something is
 
-Each device is on its kind of port: a pseudo-terminal, TCP, a virtual I2C bus. It is started again by its own input."""
+Each device is on its kind of port: a pseudo-terminal, TCP, a virtual I2C bus. It is started again by its own input, or a
+board's program is. Whether a finding is of the defect, `replay` on a sound device tells; it is stricter than campaigns, so
+on a busy machine a long true one may be called FALSE."""
 
 import concurrent.futures
 import contextlib
