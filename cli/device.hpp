@@ -85,6 +85,9 @@ struct OnBus : OnPort<BusPort, HostedBus> {};
 struct FuzzEntry {
   /// Makes lengths and checksums of a message right again, where sessions drawn at random do not.
   void (*seal)(std::span<std::byte> message){};
+  /// How long after a message began the device may still be busy with it, where what comes
+  /// meanwhile changes what it makes of it: live nobody knows whether it does; nullptr: never.
+  Duration (*works_on)(Bytes message){};
   /// The machines that `--learn` learns; empty: none.
   std::span<const campaign::Learnable> machines{};
 };

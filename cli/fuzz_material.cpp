@@ -176,7 +176,8 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
                           .has_hands = how.target.is_emulated(),
                           .has_operations = how.target.is_emulated(),
                           .longest = longest,
-                          .least_gap = how.target.is_emulated() ? Duration{} : kLeastGapLive};
+                          .least_gap = how.target.is_emulated() ? Duration{} : kLeastGapLive,
+                          .works_on = how.target.is_emulated() ? nullptr : device.fuzz.works_on};
         auto probe = kind.make_probe(rig->port(), model.target.text);
         if (!probe) return tl::unexpected{probe.error()};
         const auto request = (*probe)->request();
@@ -205,7 +206,9 @@ std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions
 std::unique_ptr<campaign::Stage> stage_alone(const Device& device, const RigOptions& how,
                                              const Hand& hand, double speed) {
   return stage_with(device, how, hand, {}, [&](const auto& /*kind*/, auto& setup) {
-    setup.how.speed = how.target.is_emulated() ? 1 : speed;
+    if (how.target.is_emulated()) return;
+    setup.how.speed = speed;
+    setup.how.after_late = AfterLate::kShifted;
   });
 }
 

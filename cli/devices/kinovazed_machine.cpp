@@ -36,8 +36,8 @@ constexpr AbstractLetter letter(std::string_view name) {
   return {name, say<line>};
 }
 
-/// What is done by hand may be late.
-constexpr Duration kHand = 1s;
+/// A program that was told to do it by hand may be done before the device has it.
+constexpr Duration kHand = 200ms;
 
 void hold(Acts& acts) {
   acts.set("arm.held", 1);

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/replay/morap.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
 #include "cli/devices/devices.hpp"
 #include "cli/devices/machines.hpp"
 #include "cli/morap/commands.hpp"
@@ -39,6 +44,20 @@ void seal(std::span<std::byte> message) {
   set.back() = static_cast<std::byte>(checksum(set.first(set.size() - 1)));
 }
 
+/// Accepted parameters wait for the next tick, and what comes to that place before is mixed with
+/// them, byte by byte (docs/spec/morap.md, Parameters). A running loop ticks at its own rate.
+Duration works_on(Bytes message) {
+  constexpr Duration kMessage = std::chrono::milliseconds{3};
+  constexpr Duration kSlowTick = std::chrono::milliseconds{20};
+  constexpr std::array kProgramming{CommandId::kProgram, CommandId::kDefaultControllers,
+                                    CommandId::kTune};
+  const bool is_programming =
+      !message.empty() &&
+      std::ranges::find(kProgramming, static_cast<CommandId>(message.front())) !=
+          kProgramming.end();
+  return is_programming ? kMessage + kSlowTick : Duration{};
+}
+
 }  // namespace
 
 cli::Device device() {
@@ -64,7 +83,7 @@ cli::Device device() {
                      .touches_of = replay::touches_of},
           .draw_session = sessions::draw,
           .live_rules = kLiveRules,
-          .fuzz = {.seal = seal, .machines = machines()},
+          .fuzz = {.seal = seal, .works_on = works_on, .machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures,
           .commands = {cli::add_i2c, cli::add_morap}};

@@ -421,7 +421,11 @@ void Author::fit(Dice& dice, Script& script) const {
   const auto begin = script.empty() ? Instant{} : script.front().time;
   for (auto& record : script) record.time -= begin.time_since_epoch();
   for (std::size_t i = 1; i < script.size(); ++i) {
-    const auto missing = material_.least_gap - (script[i].time - script[i - 1].time);
+    const auto& before = script[i - 1];
+    const auto works = material_.works_on != nullptr && is_sent(before)
+                           ? material_.works_on(before.bytes)
+                           : Duration{};
+    const auto missing = std::max(material_.least_gap, works) - (script[i].time - before.time);
     if (missing > Duration{}) shift_from(script, i, missing);
   }
   // Most are short, for what takes long is rare, and time is dear.

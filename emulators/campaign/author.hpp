@@ -29,6 +29,9 @@ struct Material {
   bool has_operations = true;  ///< of a bus: transactions may have any form
   Duration longest{};          ///< of a script
   Duration least_gap{};        ///< between two things that are done
+  /// How long the device works on a message after it, if what comes meanwhile is another thing than
+  /// what comes later; nullptr: that may be tried.
+  Duration (*works_on)(Bytes message){};
 };
 
 /// Writes scripts: sessions of the device drawn at random, and what is made of those that showed

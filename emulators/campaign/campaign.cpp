@@ -138,10 +138,8 @@ class Campaign {
         continue;
       }
       const auto& symptom = *seen->symptom;
-      const bool is_answered =
-          std::ranges::find(symptom.parts, to_string(Change::kMissing)) == symptom.parts.end();
-      if (is_answered) {
-        pass_over(symptom);
+      if (is_answered(symptom)) {
+        pass_over(symptom, "");
       } else if (++unanswered == kMostUnanswered) {
         return problem(ErrorCode::kTimedOut, "--target",
                        fmt::format("the model has {}; is it there, and the model, --model, at "
@@ -151,14 +149,18 @@ class Campaign {
     }
     return {};
   }
-  void pass_over(const Symptom& symptom) {
+  static bool is_answered(const Symptom& symptom) {
+    return std::ranges::find(symptom.parts, to_string(Change::kMissing)) == symptom.parts.end();
+  }
+  /// From now on nothing is said of it.
+  void pass_over(const Symptom& symptom, const std::string& since) {
     for (const auto& part : symptom.parts) {
       excuses_.add({}, symptom.answer, part);
       excuses_at_first_.add({}, symptom.answer, part);
       excuses_anyway_.add({}, symptom.answer, part);
     }
-    state_.passed_over.push_back(
-        fmt::format("{}: {} instead of {}", symptom.answer, symptom.actual, symptom.expected));
+    state_.passed_over.push_back(fmt::format("{}: {} instead of {}{}", symptom.answer,
+                                             symptom.actual, symptom.expected, since));
   }
 
   [[nodiscard]] Script with_question(const Script& script) const {
@@ -261,9 +263,15 @@ class Campaign {
                     .found_size = script.size(),
                     .found_after = found_after};
     auto seen_first = last_seen_;
-    // One that nobody can start again may be left changed for good.
+    // One that nobody can start again may be left changed for good. It may be so because of a
+    // moment that no model met, and what was once so cannot be tried again. Only what is silent for
+    // good is not so by chance.
     const auto always = stage_.can_reset() ? Outcome<bool>{false} : shows({}, symptom);
     if (!always) return give_up(always.error());
+    if (*always && is_answered(symptom)) {
+      pass_over(symptom, fmt::format(", since case {}", number));
+      return start_again();
+    }
     auto short_one = *always ? Outcome<Script>{script} : made_short(script, symptom);
     if (!short_one) return give_up(short_one.error());
     auto is_sure =

@@ -59,8 +59,8 @@ struct CampaignState {
   std::uint64_t cases{};
   std::uint64_t unsettled{};     ///< symptoms that did not come again
   std::string last_unsettled{};  ///< one of them
-  /// In what a device that nobody can start again was not like a new one when the campaign began;
-  /// nothing is said of that.
+  /// In what a device that nobody can start again was not like a new one when the campaign began,
+  /// or has stayed different since a case; nothing is said of that.
   std::vector<std::string> passed_over{};
   std::uint64_t refused{};  ///< cases that the guard ended
   Duration passed{};        ///< by the wall clock

@@ -61,11 +61,11 @@ ReportRow row_of_cases(const std::string& device, const CampaignState& state) {
   return row;
 }
 
-ReportRow row_of_beginning(const std::string& device, const CampaignState& state) {
+ReportRow row_of_what_stays(const std::string& device, const CampaignState& state) {
   ReportRow row;
   row.verdict = Verdict::kInconclusive;
-  row.name = fmt::format("{}.fuzz.beginning", device);
-  row.summary = "The device is like a new one when the campaign begins.";
+  row.name = fmt::format("{}.fuzz.stays", device);
+  row.summary = "As long as nothing is done, the device is like the model.";
   row.actual = fmt::format("it is not, and nobody can start it again, so nothing is said of {}",
                            fmt::join(state.passed_over, "; "));
   return row;
@@ -82,7 +82,7 @@ Report to_report(const std::string& device, const CampaignState& state,
     report.rows.push_back(row_of(device, cause));
     report.rows.back().repeat = repeat_of(*cause.finding);
   }
-  if (!state.passed_over.empty()) report.rows.push_back(row_of_beginning(device, state));
+  if (!state.passed_over.empty()) report.rows.push_back(row_of_what_stays(device, state));
   report.rows.push_back(row_of_cases(device, state));
   ReportSection shown{.title = "what the device showed"};
   shown.table.columns = {"what", "how many"};

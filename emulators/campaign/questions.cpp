@@ -17,8 +17,9 @@ using namespace std::chrono_literals;
 /// which two letters meet.
 constexpr Duration kLead = 1ms;
 
-/// Of what is done, beside what letters leave for an answer.
-constexpr Duration kMostLateness = 50ms;
+/// Of one thing that is done; what follows waits as much longer then. A device that does something
+/// by itself after half a second is still asked before.
+constexpr Duration kMostLateness = 150ms;
 
 /// A reply that comes later is missing.
 constexpr Duration kLongestLate = 300ms;
@@ -90,16 +91,18 @@ Outcome<mealy::Said> Questions::ask(const mealy::Word& word) {
     return problem(ErrorCode::kUnsupported, "--learn",
                    "each word begins on a device that was started again: --restart says how");
   }
-  // Letters that came late came close together, and what was said to one may have been said in the
-  // time of the next. Nobody knows then, so the word is asked again; and so if the guard ended it,
-  // who does when this program had no time.
-  constexpr int kTimes = 3;
+  // What was said to a letter that came late may have been another time's, or came after the end.
+  // Nobody knows then, so the word is asked again; and so if the guard ended it, who does when this
+  // program had no time. What never comes is missing.
+  constexpr int kTimes = 8;
   for (int left = kTimes;; --left) {
     const auto asked = script_of(word);
     const auto heard = play(asked.script);
     if (!heard && heard.error().code == ErrorCode::kForbidden && left > 1) continue;
     if (!heard) return tl::unexpected{heard.error()};
-    if (heard->lateness <= kMostLateness || left == 1) return answers_in(heard->target, asked);
+    auto answers = answers_in(heard->target, asked);
+    const bool is_in_time = heard->lateness <= kMostLateness;
+    if (left == 1 || (is_in_time && answers.is_whole)) return std::move(answers.said);
   }
 }
 
@@ -129,12 +132,12 @@ Questions::Asked Questions::script_of(const mealy::Word& word) const {
   return {std::move(script), std::move(begins)};
 }
 
-mealy::Said Questions::answers_in(const Heard& heard, const Asked& asked) const {
+Questions::Answers Questions::answers_in(const Heard& heard, const Asked& asked) const {
   const auto said = messages_of(heard.said, make_dissector_);
   const auto messages = messages_heard(said);
   const auto end = end_of(heard.said);
   auto letters = letters_by_time(messages, asked.begins);
-  if (machine_.is_reply != nullptr) give_back_replies(messages, asked, letters);
+  const bool is_whole = machine_.is_reply == nullptr || give_back_replies(messages, asked, letters);
   mealy::Said answers;
   for (std::size_t i = 0; i + 1 < asked.begins.size(); ++i) {
     std::vector<Message> own;
@@ -146,19 +149,19 @@ mealy::Said Questions::answers_in(const Heard& heard, const Asked& asked) const 
       answers.back() += answers.back().empty() ? "the link ends" : ", the link ends";
     }
   }
-  return answers;
+  return {std::move(answers), is_whole};
 }
 
-/// Gives each reply to the letter that sent what it replies to, if none is missing, and with a late
-/// one what came together with it.
-void Questions::give_back_replies(const std::vector<Message>& messages, const Asked& asked,
+/// Gives each reply to the letter that sent what it replies to, and with a late one what came
+/// together with it. False, and nothing is done, if one is missing.
+bool Questions::give_back_replies(const std::vector<Message>& messages, const Asked& asked,
                                   std::vector<std::size_t>& letters) const {
   const auto senders = letters_that_send(asked.script, asked.begins);
   std::vector<std::size_t> replies;
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (letters[i] > 0 && machine_.is_reply(messages[i])) replies.push_back(i);
   }
-  if (replies.size() != senders.size()) return;
+  if (replies.size() != senders.size()) return false;
   const auto by_time = letters;
   for (std::size_t i = 0; i < replies.size(); ++i) {
     const auto own = by_time[replies[i]];
@@ -171,6 +174,7 @@ void Questions::give_back_replies(const std::vector<Message>& messages, const As
       if (j == replies[i] || is_with_it) letters[j] = senders[i];
     }
   }
+  return true;
 }
 
 std::vector<std::string> letters_of(const Learnable& machine) {

@@ -27,12 +27,16 @@ class Questions final : public mealy::Teacher {
     Script script;
     std::vector<Instant> begins;  ///< of each letter
   };
+  struct Answers {
+    mealy::Said said;
+    bool is_whole{};  ///< no reply is missing
+  };
   /// On a target that is where it begins.
   [[nodiscard]] Outcome<BothHeard> play(const Script& script);
   [[nodiscard]] Asked script_of(const mealy::Word& word) const;
-  void give_back_replies(const std::vector<Message>& messages, const Asked& asked,
-                         std::vector<std::size_t>& letters) const;
-  [[nodiscard]] mealy::Said answers_in(const Heard& heard, const Asked& asked) const;
+  [[nodiscard]] bool give_back_replies(const std::vector<Message>& messages, const Asked& asked,
+                                       std::vector<std::size_t>& letters) const;
+  [[nodiscard]] Answers answers_in(const Heard& heard, const Asked& asked) const;
 
   Stage& stage_;
   const Learnable& machine_;

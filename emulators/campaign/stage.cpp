@@ -72,6 +72,22 @@ Script a_little_late(const Script& script, const std::vector<Instant>& passed) {
 
 constexpr std::array<Guess, 4> kGuesses{as_left, as_meant, in_bundles, a_little_late};
 
+/// Nor does anybody know where in its tick a live device is, and what comes close together may come
+/// in one tick or in two. So there are models that began later. No multiple of the step is that of
+/// a whole number of milliseconds, so ticks of 5 and of 10 ms are looked at from sixteen sides.
+constexpr std::size_t kPhases = 16;
+constexpr Duration kPhaseStep = 610us;
+
+/// The models beside a live target: each guess in the target's own phase, then the plain one in
+/// others.
+constexpr std::size_t kLiveModels = kGuesses.size() + kPhases - 1;
+
+Guess guess_of(std::size_t model) { return model < kGuesses.size() ? kGuesses[model] : as_left; }
+Duration phase_of(std::size_t model) {
+  if (model < kGuesses.size()) return {};
+  return static_cast<Duration::rep>(model - kGuesses.size() + 1) * kPhaseStep;
+}
+
 Heard heard(Outcome<Played> played) {
   if (!played) return {{}, played.error()};
   std::ranges::stable_sort(played->actual, {}, &KeptRecord::time);
@@ -83,12 +99,13 @@ Heard heard(Outcome<Played> played) {
 template <class Port>
 Outcome<void> StageOn<Port>::renew_models() {
   models_.clear();
-  const auto count = setup_.is_emulated ? 1 : kGuesses.size();
+  const auto count = setup_.is_emulated ? 1 : kLiveModels;
   for (std::size_t i = 0; setup_.make_model && i < count; ++i) {
     auto opened = setup_.make_model();
     if (!opened) return tl::unexpected{opened.error()};
     models_.push_back(*std::move(opened));
     (void)greet(models_.back().port());
+    if (const auto phase = phase_of(i); phase > Duration{}) rest(models_.back().port(), phase);
   }
   last_end_ = target_->port().now();
   return {};
@@ -112,7 +129,7 @@ Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
   for (std::size_t i = 0; i < models_.size(); ++i) {
     auto& model = models_[i].port();
     if (idle > Duration{}) rest(model, idle);
-    const auto guessed = setup_.is_emulated ? script : kGuesses.at(i)(script, passed);
+    const auto guessed = setup_.is_emulated ? script : guess_of(i)(script, passed);
     both.models.push_back(heard(play_host(model, guessed, setup_.how)));
   }
   return both;

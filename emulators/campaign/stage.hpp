@@ -29,8 +29,9 @@ struct BothHeard {
 };
 
 /// Where cases are played: a target, and beside it models of it that get the same at the same
-/// times. Of a live target nobody knows to the microsecond when something came, and in what pieces,
-/// so there are several models then, each of which gets it as it may have been.
+/// times. Of a live target nobody knows to the microsecond when something came, in what pieces, and
+/// where in its tick the target was, so there are several models then, each of which gets it as it
+/// may have been.
 class Stage {
  public:
   Stage() = default;

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 
 namespace armjig::i2c {
 namespace {
@@ -12,6 +13,7 @@ using enum BusReply::Outcome;
 
 constexpr std::byte kIdle{0xFF};
 constexpr int kRecoveryClocks = 9;
+constexpr std::string_view kPower = "power";
 
 }  // namespace
 
@@ -79,7 +81,18 @@ void Bus::advance_to(Instant time) {
   for (auto& device : devices_) device.advance_to(time);
 }
 
+std::span<const DeviceInput> Bus::inputs() noexcept {
+  static constexpr std::array kInputs{
+      DeviceInput{kPower, "any: off and on, all that is on the bus"}};
+  return kInputs;
+}
+
 bool Bus::set_input(Instant time, std::string_view name, std::int64_t value) {
+  if (name == kPower) {
+    advance_to(time);
+    for (auto& device : devices_) device.restart(time);
+    return !devices_.empty();
+  }
   if (const auto found = named(name)) {
     return devices_[found->first].set_input(time, found->second, value);
   }

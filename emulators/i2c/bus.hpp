@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "harness/core/device_input.hpp"
 #include "harness/core/emulation.hpp"
 #include "harness/core/time.hpp"
 
@@ -177,8 +179,10 @@ class Bus {
   /// Nine clocks and a stop, which free a data line that a device holds in the middle of a byte.
   BusReply recover(Instant time);
   void advance_to(Instant time);
-  /// Of the device that the name begins with, as in `0x12.power`, else of the first one that has
-  /// such an input. False: none has.
+  /// What people can do to all that is on it.
+  [[nodiscard]] static std::span<const DeviceInput> inputs() noexcept;
+  /// One of `inputs`; or of the device that the name begins with, as in `0x12.power`, else of the
+  /// first one that has such an input. False: none has.
   [[nodiscard]] bool set_input(Instant time, std::string_view name, std::int64_t value);
   /// As for `set_input`. None: no device has such a thing.
   [[nodiscard]] std::optional<std::int64_t> observe(Instant time, std::string_view name);

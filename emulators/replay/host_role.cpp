@@ -73,6 +73,8 @@ class Clock {
   [[nodiscard]] Instant recorded(Instant now) const {
     return Instant{scaled(now.time_since_epoch() - base_, speed_)};
   }
+  /// What follows is due so much later.
+  void stand_still(Duration time) { base_ += time; }
 
  private:
   static Duration scaled(Duration time, double factor) {
@@ -88,10 +90,17 @@ class Clock {
 class Playing {
  public:
   Playing(Instant now, Records records, const PlayHow& how)
-      : clock_{now, records, how.speed}, touches_of_{how.touches_of}, by_hand_{how.by_hand} {}
+      : clock_{now, records, how.speed},
+        touches_of_{how.touches_of},
+        by_hand_{how.by_hand},
+        after_late_{how.after_late} {}
   [[nodiscard]] Played take() { return std::move(played_); }
-  /// The record that was played last has passed.
-  void note_passed(Instant now) { played_.passed.push_back(clock_.recorded(now)); }
+  /// That record, the last one that was played, has passed.
+  void note_passed(const KeptRecord& record, Instant now) {
+    played_.passed.push_back(clock_.recorded(now));
+    const auto due = clock_.due(record.time);
+    if (after_late_ == AfterLate::kShifted && now > due) clock_.stand_still(now - due);
+  }
 
  protected:
   Result<void> expect(KeptRecord record) {
@@ -107,7 +116,7 @@ class Playing {
   bool touch(Endpoint& port, const KeptRecord& record) {
     bool is_done = false;
     for (const auto& [name, value] : touches_of(record, touches_of_)) {
-      if (port.touch(name, value) || (by_hand_ && by_hand_(name, value))) is_done = true;
+      if (port.touch(name, value) || do_by_hand(port, name, value)) is_done = true;
     }
     if (is_done) ++played_.sent;
     return is_done;
@@ -119,8 +128,18 @@ class Playing {
   Played played_;
 
  private:
+  /// Nobody knows how long it takes, so what follows leaves as much later.
+  bool do_by_hand(const Endpoint& port, std::string_view name, std::int64_t value) {
+    if (!by_hand_) return false;
+    const auto begun = port.now();
+    const bool is_done = by_hand_(name, value);
+    clock_.stand_still(port.now() - begun);
+    return is_done;
+  }
+
   TouchesOf touches_of_;
   const std::function<bool(std::string_view, std::int64_t)>& by_hand_;
+  AfterLate after_late_;
 };
 
 class StreamPlaying : public Playing {
@@ -493,7 +512,7 @@ Outcome<Played> play(Kind playing, const Endpoint& port, Records records, const 
   };
   for (const auto& record : records) {
     if (const auto played = playing.play(record); !played) return ended(played.error());
-    playing.note_passed(port.now());
+    playing.note_passed(record, port.now());
   }
   if (!records.empty()) {
     const auto heard = playing.listen_until(records.back().time + how.trailing);

@@ -21,6 +21,12 @@
 /// host sent leaves at its time, and what the device says is kept beside what it said.
 namespace armjig {
 
+/// What becomes of the records after one that left late.
+enum class AfterLate {
+  kAsRecorded,  ///< each leaves at its time: what is late delays nothing that follows
+  kShifted,     ///< all leave as much later, so that none come closer together
+};
+
 struct PlayHow {
   double speed = 1;        ///< 2: in half the time; what is kept has the times of the recording
   TouchesOf touches_of{};  ///< what was done beside the link
@@ -29,8 +35,10 @@ struct PlayHow {
   /// after it.
   Duration lead{};
   Duration trailing{};  ///< listens so much longer than the recording lasts
-  /// Does beside the link what the port cannot; false: nobody can. Empty: nobody does.
+  /// Does beside the link what the port cannot; false: nobody can. Empty: nobody does. The clock of
+  /// the recording stands still as long as it takes.
   std::function<bool(std::string_view input, std::int64_t value)> by_hand{};
+  AfterLate after_late = AfterLate::kAsRecorded;
 };
 
 /// What is to be compared, of both sides in order of time.
@@ -46,9 +54,9 @@ struct Played {
   std::map<std::string, std::size_t> left_out;
 };
 
-/// Plays records of one link, and the events and CAN frames beside it. The schedule is absolute:
-/// what is late delays nothing that follows. Problems: those of the port, `kForbidden` among them
-/// if the guard refused something; what follows is not sent then.
+/// Plays records of one link, and the events and CAN frames beside it. The schedule is absolute,
+/// unless `PlayHow::after_late` says otherwise. Problems: those of the port, `kForbidden` among
+/// them if the guard refused something; what follows is not sent then.
 [[nodiscard]] Outcome<Played> play_host(StreamPort& port, std::span<const KeptRecord> records,
                                         const PlayHow& how);
 /// A connection that the recording has from its middle on is begun at its first record.

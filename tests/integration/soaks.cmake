@@ -122,3 +122,12 @@ add_test(NAME soak.rare_defects
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/rare_defects_soak.py
                  $<TARGET_FILE:armjig> ${PROJECT_SOURCE_DIR})
 set_tests_properties(soak.rare_defects PROPERTIES LABELS soak TIMEOUT 3600)
+
+# Half an hour, twenty minutes and ten: the same defects live over pseudo-terminal, TCP and virtual bus; sound devices
+# side by side, and how their emulators grow; what is known, without its file.
+foreach(what rare sound known)
+  add_test(NAME soak.live_fuzz.${what}
+           COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/live_fuzz_soak.py $<TARGET_FILE:armjig>
+                   ${PROJECT_SOURCE_DIR} ${what})
+  set_tests_properties(soak.live_fuzz.${what} PROPERTIES LABELS soak TIMEOUT 7200 RUN_SERIAL TRUE)
+endforeach()

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <utility>
 
+#include "emulators/i2c/bus.hpp"
 #include "emulators/kinovazed/defects/defective_server.hpp"
 #include "emulators/parol6/arm.hpp"
 #include "harness/link/impairment.hpp"
@@ -304,6 +305,7 @@ std::string part(std::string_view what) {
   if (what == "flags parol6" || what == "flags kinovazed") return flags(name);
   if (what == "inputs parol6") return inputs(parol6::emulation::arm_inputs());
   if (what == "inputs kinovazed") return inputs(kinovazed::emulation::server_inputs());
+  if (what == "inputs morap") return inputs(i2c::Bus::inputs());
   if (what == "commands morap") return morap_commands();
   if (what == "commands kinovazed") return kinovazed_commands();
   if (what == "readings morap") return morap_readings();

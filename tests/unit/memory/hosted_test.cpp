@@ -121,7 +121,7 @@ TEST(HostedBus, MayBeASingleDevice) {
   std::array<std::byte, 1> answer{};
   const std::array messages{write_to(kThermometer, choose), read_from(kThermometer, answer)};
   EXPECT_EQ(port->transfer(messages), Transfer::kDone);
-  EXPECT_FALSE(port->touch("power", 0));
+  EXPECT_FALSE(port->touch("shaft", 0));
 }
 
 TEST(HostedBus, IsAsPatientAsItIsTold) {

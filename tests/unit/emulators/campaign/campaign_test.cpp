@@ -169,6 +169,96 @@ TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
   }
 }
 
+TEST(Campaign, LeavesANodeTheTicksThatItNeedsForParameters) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
+  auto material = cli::material_of(device, emulated(""), emulated(""), 6s).value();
+  material.works_on = device.fuzz.works_on;
+  Author author{material};
+  std::size_t followed = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto script = author.draw(seed, {});
+    for (std::size_t i = 1; i < script.size(); ++i) {
+      const auto& before = script[i - 1];
+      if (!is_sent(before) || device.fuzz.works_on(before.bytes) == Duration{}) continue;
+      ++followed;
+      EXPECT_GE(script[i].time - before.time, 20ms);
+    }
+  }
+  EXPECT_GT(followed, 100U);
+}
+
+/// A sound device that becomes another one for good, and that nobody can start again.
+class ChangingStage final : public Stage {
+ public:
+  ChangingStage(std::unique_ptr<Stage> before, std::unique_ptr<Stage> after)
+      : before_{std::move(before)}, after_{std::move(after)} {}
+  Outcome<void> reset() override {
+    if (std::exchange(was_begun_, true)) return {};
+    return before_->reset().and_then([this] { return after_->reset(); });
+  }
+  [[nodiscard]] bool can_reset() const override { return false; }
+  Outcome<void> renew_models() override { return {}; }
+  Outcome<BothHeard> play(const Script& script) override {
+    constexpr int kSound = 4;
+    return (++times_ > kSound ? after_ : before_)->play(script);
+  }
+
+ private:
+  std::unique_ptr<Stage> before_;
+  std::unique_ptr<Stage> after_;
+  bool was_begun_ = false;
+  int times_ = 0;
+};
+
+/// Its target never answers.
+class SilentStage final : public Stage {
+ public:
+  explicit SilentStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
+  Outcome<void> reset() override { return stage_->reset(); }
+  [[nodiscard]] bool can_reset() const override { return stage_->can_reset(); }
+  Outcome<void> renew_models() override { return stage_->renew_models(); }
+  Outcome<BothHeard> play(const Script& script) override {
+    auto heard = stage_->play(script);
+    if (heard) heard->target.said.clear();
+    return heard;
+  }
+
+ private:
+  std::unique_ptr<Stage> stage_;
+};
+
+CampaignState state_after_change(std::unique_ptr<Stage> (*make_changed)(const cli::Device&)) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  auto material = cli::material_of(device, emulated(""), emulated(""), 1s).value();
+  ChangingStage stage{cli::stage_of(device, emulated(""), emulated(""), Hand{}, 20ms),
+                      make_changed(device)};
+  CampaignState state;
+  const CampaignOptions options{
+      .most_cases = 10, .judging = {device.make_dissector, {}, 20ms}, .confirmations = 3};
+  EXPECT_TRUE(run_campaign(stage, material, options, state, {}));
+  return state;
+}
+
+TEST(Campaign, SaysNothingOfWhatStaysDifferentOnADeviceThatNobodyCanStartAgain) {
+  const auto state = state_after_change([](const cli::Device& device) {
+    return cli::stage_of(device, emulated("?fault=zero:gripper.object"), emulated(""), Hand{},
+                         20ms);
+  });
+  EXPECT_TRUE(state.findings.empty());
+  ASSERT_EQ(state.passed_over.size(), 1U);
+  EXPECT_NE(state.passed_over.front().find("gripper.object 0"), std::string::npos);
+  EXPECT_NE(state.passed_over.front().find(", since case "), std::string::npos);
+}
+
+TEST(Campaign, TellsOfADeviceThatIsSilentForGood) {
+  const auto state = state_after_change([](const cli::Device& device) -> std::unique_ptr<Stage> {
+    return std::make_unique<SilentStage>(
+        cli::stage_of(device, emulated(""), emulated(""), Hand{}, 20ms));
+  });
+  EXPECT_FALSE(state.findings.empty());
+  EXPECT_TRUE(state.passed_over.empty());
+}
+
 TEST(Campaign, DoesNotBeginWithATargetThatAnswersNothing) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
   auto material = cli::material_of(device, emulated(""), emulated(""), 20s).value();

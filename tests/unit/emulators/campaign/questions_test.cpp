@@ -152,10 +152,25 @@ TEST(Questions, AskAgainWhatWasAskedLate) {
   FixedStage stage;
   stage.times_late = 2;
   Questions questions{stage, machine_of(device, "server"), device.make_dissector, {}};
-  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+  constexpr mealy::Letter kQuiet = 11;  // nothing is sent, so no reply is missing
+  EXPECT_EQ(questions.ask({kQuiet}).value(), mealy::Said{""});
   EXPECT_EQ(stage.times, 3);
   stage.times_late = 1'000;  // somebody who is always late is heard all the same
-  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});
+  EXPECT_EQ(questions.ask({kQuiet}).value(), mealy::Said{""});
+}
+
+TEST(Questions, AskAgainWhereAReplyIsMissing) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  FixedStage stage;
+  Questions questions{stage, machine_of(device, "server"), device.make_dissector, {}};
+  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{""});  // one that never comes is missing
+  EXPECT_GT(stage.times, 1);
+  stage.times = 0;
+  for (const auto& record : stage.played) {
+    if (is_sent(record)) stage.said = {line_at(record.time.time_since_epoch(), "Accepted\r\n")};
+  }
+  EXPECT_EQ(questions.ask({1}).value(), mealy::Said{"Accepted"});
+  EXPECT_EQ(stage.times, 1);
 }
 
 TEST(Questions, AskAgainWhatTheGuardEnded) {

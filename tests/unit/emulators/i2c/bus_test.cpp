@@ -188,6 +188,15 @@ TEST_F(MorapBus, ANodeThatRestartsInATransactionLetsGoOfIt) {
   EXPECT_EQ(status(), kNeedsCalibration);
 }
 
+TEST_F(MorapBus, PowerIsOffAndOnForAllThatIsOnIt) {
+  ASSERT_EQ(port_.start(kNode, kWrite), Ack::kAck);
+  ASSERT_EQ(port_.write(kCalibrate), Ack::kAck);
+  ASSERT_TRUE(port_.stop());
+  EXPECT_EQ(status(), kDisabled);
+  EXPECT_TRUE(port_.touch("power", 1));
+  EXPECT_EQ(status(), kNeedsCalibration);
+}
+
 TEST_F(MorapBus, EffectsDoNotWaitForAStop) {
   EXPECT_EQ(port_.start(kNode, kWrite), Ack::kAck);
   EXPECT_EQ(port_.write(kCalibrate), Ack::kAck);

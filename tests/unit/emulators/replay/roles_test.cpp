@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "emulators/i2c/bus.hpp"
 #include "emulators/memory/in_memory.hpp"
 #include "emulators/replay/device_role.hpp"
 #include "emulators/replay/host_role.hpp"
@@ -137,6 +138,48 @@ TEST(HostRole, IsAnsweredByAnEmulatedBoardAsRecorded) {
 TEST(HostRole, IsAnsweredByEmulatedNodesAsRecorded) {
   expect_answers_as_recorded(kMorap, morap::replay::set_up,
                              {.touches_of = morap::replay::touches_of});
+}
+
+KeptRecord written_at(Duration time) {
+  return {.time = at(time), .kind = LinkKind::kBus, .id = 0x12, .bytes = from_hex("01").value()};
+}
+
+/// By then all of it was written to an empty bus.
+Instant end_of_play(const std::vector<KeptRecord>& records, const PlayHow& how, BusPort& port) {
+  const auto played = play_host(port, records, how);
+  EXPECT_TRUE(played);
+  EXPECT_EQ(played->passed.size(), records.size());
+  return port.now();
+}
+
+TEST(HostRole, WaitsAsLongAsAHandTakes) {
+  const auto port = open_in_memory(make_hosted(i2c::Bus{}));
+  const std::vector<KeptRecord> records{{.time = at(10ms),
+                                         .kind = LinkKind::kEvents,
+                                         .details = R"("dir":"input","name":"estop","value":0)"},
+                                        written_at(20ms)};
+  const PlayHow slow{.by_hand = [&](std::string_view name, std::int64_t value) {
+    EXPECT_EQ(name, "estop");
+    EXPECT_EQ(value, 0);
+    port->wait_until(port->now() + 1s);
+    return true;
+  }};
+  const auto end = end_of_play(records, slow, *port);
+  EXPECT_GE(end, at(1020ms));
+  EXPECT_LT(end, at(1030ms));
+}
+
+TEST(HostRole, ShiftsWhatFollowsALateRecordIfItIsToldTo) {
+  // Five at once take time, so the last of them is late.
+  std::vector<KeptRecord> records(5, written_at(10ms));
+  records.push_back(written_at(20ms));
+  const auto end = [&](AfterLate after_late) {
+    const auto port = open_in_memory(make_hosted(i2c::Bus{}));
+    return end_of_play(records, {.after_late = after_late}, *port);
+  };
+  const auto own = end(AfterLate::kAsRecorded) - at(20ms);
+  EXPECT_LT(own, 1ms);
+  EXPECT_GE(end(AfterLate::kShifted) - at(20ms), 5 * own);
 }
 
 TEST(DeviceRole, WaitsForTheHostAndThenTakesTheTimeThatItTook) {
