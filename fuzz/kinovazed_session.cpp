@@ -18,7 +18,7 @@ class ServerPromises {
  public:
   using Device = kinovazed::emulation::Server;
   static constexpr auto replay_watched = kinovazed::replay::replay_watched;
-  static constexpr std::size_t kMostHeap = 128 * 1024;
+  static constexpr std::size_t kMostHeap = 256 * 1024;
 
   explicit ServerPromises(const Trace& session) {
     for (const auto& event : session.events) {

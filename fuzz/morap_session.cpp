@@ -19,7 +19,7 @@ class BusPromises {
  public:
   using Device = i2c::Bus;
   static constexpr auto replay_watched = morap::replay::replay_watched;
-  static constexpr std::size_t kMostHeap = 128 * 1024;  // sixteen nodes
+  static constexpr std::size_t kMostHeap = 256 * 1024;
 
   explicit BusPromises(const Trace& session) {
     const auto header = nlohmann::json::parse(session.header);

@@ -20,7 +20,7 @@ class BoardPromises {
  public:
   using Device = parol6::emulation::Board;
   static constexpr auto replay_watched = parol6::replay::replay_watched;
-  static constexpr std::size_t kMostHeap = 1024;
+  static constexpr std::size_t kMostHeap = 256 * 1024;
 
   explicit BoardPromises(const Trace& session)
       : pass_{nlohmann::json::parse(session.header).at("loop_us").get<std::int64_t>()} {
@@ -45,7 +45,8 @@ class BoardPromises {
       require(is_possible, "a joint makes no more than a step in each pass");
       positions_[j] = position;
     }
-    require(board.homing().homed() >> kJointCount == 0, "only joints are homed");
+    constexpr unsigned kNoJoints = 0xFFU >> kJointCount;  // joints are the bits from 7 down
+    require((board.homing().homed() & kNoJoints) == 0, "only joints are homed");
     was_seen_ = true;
     time_ = time;
   }
