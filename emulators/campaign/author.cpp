@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <map>
 #include <optional>
@@ -32,8 +33,8 @@ std::int64_t mostly_few(Dice& dice, std::int64_t least, std::int64_t most) {
 
 /// How often something is repeated. Counters turn over at powers of two, so now and then so often.
 std::size_t some_count(Dice& dice) {
-  constexpr std::array<std::int64_t, 3> kTurns{257, 1025, 1200};
-  const auto most = dice.one_in(12) ? dice.one_of(kTurns) : mostly_few(dice, 2, 60);
+  constexpr std::array<std::int64_t, 5> kTurns{65, 129, 257, 1025, 1200};
+  const auto most = dice.one_in(8) ? dice.one_of(kTurns) : mostly_few(dice, 2, 60);
   return static_cast<std::size_t>(dice.one_in(2) ? most : dice.between(1, most));
 }
 
@@ -59,6 +60,12 @@ std::size_t some_place(Dice& dice, const Script& script) {
 Duration some_pause(Dice& dice) {
   return std::chrono::microseconds{dice.one_in(3) ? mostly_few(dice, 500, 200'000)
                                                   : mostly_few(dice, 500, 20'000)};
+}
+
+/// The same before each of so many, short enough for most cases to have all of them.
+Duration some_pause_of(Dice& dice, std::size_t count) {
+  constexpr Duration kMostTogether = 5s;
+  return std::min(some_pause(dice), kMostTogether / static_cast<std::int64_t>(count));
 }
 
 /// The last of what belongs to the record there: on a bus, a choice and what it chose are read
@@ -106,14 +113,32 @@ std::int64_t odd_float(Dice& dice) {
   return dice.one_of(kBits);
 }
 
-/// A number beside which a computation may turn: a power of two or of ten, or one next to it.
+/// Numbers beside which computations turn: powers of two and of ten, and angles.
+constexpr std::array<std::int64_t, 28> kEdges{
+    1,      2,      4,       8,       10,        16,        32,        64,       90,    100,
+    128,    180,    256,     512,     1000,      1'024,     2'048,     4'096,    8'192, 10'000,
+    32'768, 65'536, 100'000, 1 << 20, 1'000'000, 1LL << 22, 1LL << 23, 1LL << 31};
+/// They, what is next to them, and the same below zero.
+constexpr std::size_t kEdgeCount = kEdges.size() * 6;
+
+std::int64_t edge_at(std::size_t place) {
+  const auto value =
+      kEdges.at(place / 6 % kEdges.size()) + static_cast<std::int64_t>(place % 3) - 1;
+  return place % 6 < 3 ? value : -value;
+}
+
 std::int64_t edge(Dice& dice) {
-  constexpr std::array<std::int64_t, 24> kEdges{
-      1,     2,      4,      8,       10,      16,        32,        64,
-      90,    100,    128,    180,     256,     1000,      1'024,     4'096,
-      8'192, 32'768, 65'536, 100'000, 1 << 20, 1'000'000, 1LL << 23, 1LL << 31};
-  const auto value = dice.one_of(kEdges) + dice.between(-1, 1);
-  return dice.one_in(3) ? -value : value;
+  const auto place = dice.number<std::size_t>(0, kEdges.size() - 1) * 6;
+  return edge_at(place + dice.number<std::size_t>(0, 2) + (dice.one_in(3) ? 3 : 0));
+}
+
+/// Bits of a float with that value, or with a part of it.
+std::int64_t float_of(std::int64_t value, float part) {
+  return std::bit_cast<std::int32_t>(static_cast<float>(value) * part);
+}
+float some_part(Dice& dice) {
+  constexpr std::array<float, 5> kParts{1, 0.5, 0.1F, 0.01F, 0.001F};
+  return dice.one_of(kParts);
 }
 
 /// What is beside the number that is there, or has something to do with it.
@@ -148,12 +173,14 @@ const Field& some_field(Dice& dice, std::span<const Field> fields) {
 void spoil_bytes_of(Dice& dice, const Field& field, std::span<std::byte> message) {
   if (field.offset + std::size_t{field.width} > message.size() || field.width == 0) return;
   const bool is_named = !field.values.empty() && !dice.one_in(3);
-  const auto value = field.encoding == Encoding::kFloatLittle && dice.one_in(2) ? odd_float(dice)
-                     : is_named       ? dice.one_of(field.values).value
-                     : dice.one_in(4) ? end_of(dice, field)
-                     : dice.one_in(3) ? edge(dice)
-                     : dice.one_in(3) ? beside(dice, field_value(field, message))
-                                      : sessions::odd_number(dice);
+  const bool is_float = field.encoding == Encoding::kFloatLittle;
+  const auto value = is_float && dice.one_in(2)    ? odd_float(dice)
+                     : is_float && !dice.one_in(3) ? float_of(edge(dice), some_part(dice))
+                     : is_named                    ? dice.one_of(field.values).value
+                     : dice.one_in(4)              ? end_of(dice, field)
+                     : dice.one_in(3)              ? edge(dice)
+                     : dice.one_in(3)              ? beside(dice, field_value(field, message))
+                                                   : sessions::odd_number(dice);
   set_field_value(field, message, value);
 }
 
@@ -167,7 +194,7 @@ std::string number_as_text(Dice& dice) {
 }
 
 /// The piece of a line that colons divide, replaced.
-void spoil_piece_of(Dice& dice, const Field& field, std::vector<std::byte>& line) {
+void set_piece(const Field& field, std::vector<std::byte>& line, std::string_view text) {
   constexpr std::byte kColon{':'};
   auto begin = line.begin();
   for (auto left = field.offset; left > 0 && begin != line.end(); --left) {
@@ -177,11 +204,21 @@ void spoil_piece_of(Dice& dice, const Field& field, std::vector<std::byte>& line
   const auto end = std::find_if(begin, line.end(), [](std::byte byte) {
     return byte == kColon || byte == std::byte{'\r'} || byte == std::byte{'\n'};
   });
-  const bool is_named = !field.values.empty() && !dice.one_in(3);
-  const auto text = is_named ? std::string{dice.one_of(field.values).name} : number_as_text(dice);
   const auto bytes = std::as_bytes(std::span{text});
   const auto place = line.erase(begin, end);
   line.insert(place, bytes.begin(), bytes.end());
+}
+
+void spoil_piece_of(Dice& dice, const Field& field, std::vector<std::byte>& line) {
+  const bool is_named = !field.values.empty() && !dice.one_in(3);
+  set_piece(field, line,
+            is_named ? std::string{dice.one_of(field.values).name} : number_as_text(dice));
+}
+
+/// Of the same kind of number, as those of several joints or axes.
+bool are_akin(const Field& one, const Field& other) {
+  return one.encoding == other.encoding && one.width == other.width && one.unit == other.unit &&
+         one.place == other.place && one.values.empty() && other.values.empty();
 }
 
 }  // namespace
@@ -232,7 +269,25 @@ Script Author::harmless_ones(Dice& dice) const {
 
 void Author::change_field(Dice& dice, Script& script) const {
   auto* const record = some_sent(dice, script);
-  if (record != nullptr) change_a_field(dice, *record);
+  if (record == nullptr) return;
+  if (dice.one_in(3)) {
+    return change_everywhere(dice, script, words_of(*record, material_.make_dissector));
+  }
+  for (auto left = dice.one_in(4) ? dice.between(2, 6) : 1; left > 0; --left) {
+    change_a_field(dice, *record);
+  }
+}
+
+/// Changes all messages of a kind alike: what comes of a number little by little, or is seen only
+/// later, shows if it is always there.
+void Author::change_everywhere(Dice& dice, Script& script, const std::string& kind) const {
+  const auto seed = dice.number<std::uint64_t>(0, INT64_MAX);
+  for (auto& record : script) {
+    if (!is_sent(record) || record.bytes.empty()) continue;
+    if (words_of(record, material_.make_dissector) != kind) continue;
+    Dice same{seed};
+    change_a_field(same, record);
+  }
 }
 
 void Author::change_a_field(Dice& dice, KeptRecord& record) const {
@@ -246,16 +301,34 @@ void Author::change_a_field(Dice& dice, KeptRecord& record) const {
 void Author::spoil_field(Dice& dice, KeptRecord& record, const Message& whole,
                          const Field& field) const {
   if (field.place == Place::kPiece) return spoil_piece_of(dice, field, record.bytes);
-  const std::size_t head = record.kind == LinkKind::kBus ? 1 : 0;
   auto message = whole.raw;
-  if (message.size() > record.bytes.size() + head) return;
   spoil_bytes_of(dice, field, message);
-  std::copy(message.begin() + static_cast<std::ptrdiff_t>(head), message.end(),
-            record.bytes.begin());
-  if (!dice.one_in(4)) seal(record);
+  if (put(message, record) && !dice.one_in(4)) seal(record);
+}
+
+/// The number into the field, and into its kin, too, if they are given. The message is sound then.
+void Author::set_number(KeptRecord& record, const Message& whole, std::span<const Field> fields,
+                        std::int64_t number, float part) const {
+  auto message = whole.raw;
+  for (const auto& field : fields) {
+    if (field.place == Place::kPiece) {
+      set_piece(field, record.bytes, std::to_string(number));
+    } else if (field.offset + std::size_t{field.width} <= message.size() && field.width > 0) {
+      const bool is_float = field.encoding == Encoding::kFloatLittle;
+      set_field_value(field, message, is_float ? float_of(number, part) : number);
+    }
+  }
+  if (fields.front().place == Place::kBytes && put(message, record)) seal(record);
 }
 
 /// Of a bus the address is part of a message, though not of the record.
+bool Author::put(Bytes message, KeptRecord& record) {
+  const std::size_t head = record.kind == LinkKind::kBus ? 1 : 0;
+  if (message.size() > record.bytes.size() + head) return false;
+  std::ranges::copy(message.subspan(head), record.bytes.begin());
+  return true;
+}
+
 void Author::seal(KeptRecord& record) const {
   if (material_.seal == nullptr) return;
   auto message = record.bytes;
@@ -283,8 +356,9 @@ void Author::change_some_bytes(Dice& dice, KeptRecord& record) const {
   if (dice.one_in(2)) seal(record);
 }
 
-/// One message many times, each with another value in one and the same field, or with another odd
-/// byte at one and the same place: what only one of them does is met soon.
+/// One message many times, each with another value in one and the same field, and now and then in
+/// others of its kind, or with another odd byte at one and the same place: what only one of them
+/// does is met soon. Half of them go along the edges, so that none is missed for long.
 void Author::sweep(Dice& dice, Script& script) const {
   const auto* const record = some_sent(dice, script);
   if (record == nullptr) return;
@@ -299,7 +373,19 @@ void Author::sweep(Dice& dice, Script& script) const {
                                          : dice.between(0, std::ssize(record->bytes) - 1);
   const bool is_longer = dice.one_in(2);
   const auto original = *record;
+  std::vector<Field> numbers;  ///< that go along the edges together
+  if (field != nullptr && field->values.empty() && dice.one_in(2)) {
+    const bool has_kin = dice.one_in(2);
+    std::ranges::copy_if(
+        messages.front().fields, std::back_inserter(numbers),
+        [&](const Field& one) { return &one == field || (has_kin && are_akin(one, *field)); });
+  }
+  auto edge_place = dice.number<std::size_t>(0, kEdgeCount - 1);
+  const auto part = some_part(dice);
   const auto vary = [&](KeptRecord& copy) {
+    if (!numbers.empty()) {
+      return set_number(copy, messages.front(), numbers, edge_at(edge_place++), part);
+    }
     if (field != nullptr) return spoil_field(dice, copy, messages.front(), *field);
     const auto at = copy.bytes.begin() + byte_place;
     if (is_longer) {
@@ -311,10 +397,13 @@ void Author::sweep(Dice& dice, Script& script) const {
   };
   // Each of them a few times in a row now and then, as for what a second one does, or an eighth.
   const auto times = static_cast<std::size_t>(dice.one_in(3) ? dice.between(2, 16) : 1);
-  const auto values = static_cast<std::size_t>(dice.between(4, times > 1 ? 16 : 40));
+  constexpr auto kMostValues = static_cast<std::int64_t>(kEdgeCount);
+  const auto most = times > 1 ? 16 : numbers.empty() ? 40 : kMostValues;
+  const auto values = static_cast<std::size_t>(dice.between(4, most));
   KeptRecord current;
   std::size_t left = 0;
-  insert_copies(script, place, last, values * times, some_pause(dice), [&](KeptRecord& copy) {
+  const auto pause = some_pause_of(dice, values * times);
+  insert_copies(script, place, last, values * times, pause, [&](KeptRecord& copy) {
     if (copy.bytes != original.bytes || !is_sent(copy)) return;
     if (left == 0) {
       current = copy;
@@ -357,14 +446,16 @@ void Author::split(Dice& dice, Script& script) const {
 
 void Author::repeat(Dice& dice, Script& script) const {
   constexpr std::size_t kMostTogether = 4;
+  constexpr std::size_t kMany = 100;  // so often one thing only, or there is no time for all
   const auto* const record = some_sent(dice, script);
   if (record == nullptr) return;
   const auto place = static_cast<std::size_t>(record - script.data());
   auto last = end_of_exchange(script, place);
-  if (dice.one_in(2)) {
+  const auto count = some_count(dice);
+  if (count < kMany && dice.one_in(2)) {
     last = std::min(script.size() - 1, last + dice.number<std::size_t>(0, kMostTogether - 1));
   }
-  insert_copies(script, place, last, some_count(dice), some_pause(dice), [](KeptRecord&) {});
+  insert_copies(script, place, last, count, some_pause_of(dice, count), [](KeptRecord&) {});
 }
 
 void Author::leave_out(Dice& dice, Script& script) const {

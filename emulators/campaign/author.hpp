@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "emulators/campaign/script.hpp"
@@ -52,8 +53,12 @@ class Author {
   [[nodiscard]] Script fresh(Dice& dice) const;
   [[nodiscard]] Script harmless_ones(Dice& dice) const;
   void change_field(Dice& dice, Script& script) const;
+  void change_everywhere(Dice& dice, Script& script, const std::string& kind) const;
   void change_a_field(Dice& dice, KeptRecord& record) const;
   void spoil_field(Dice& dice, KeptRecord& record, const Message& whole, const Field& field) const;
+  void set_number(KeptRecord& record, const Message& whole, std::span<const Field> fields,
+                  std::int64_t number, float part) const;
+  static bool put(Bytes message, KeptRecord& record);
   void seal(KeptRecord& record) const;
   void change_some_bytes(Dice& dice, KeptRecord& record) const;
   void sweep(Dice& dice, Script& script) const;

@@ -204,6 +204,7 @@ class Campaign {
   [[nodiscard]] Outcome<void> give_up(const Problem& problem) {
     if (!is_refusal(problem)) return tl::unexpected{problem};
     ++state_.refused;
+    state_.last_refusal = problem.hint;
     return start_again();
   }
 

@@ -62,8 +62,9 @@ struct CampaignState {
   /// In what a device that nobody can start again was not like a new one when the campaign began,
   /// or has stayed different since a case; nothing is said of that.
   std::vector<std::string> passed_over{};
-  std::uint64_t refused{};  ///< cases that the guard ended
-  Duration passed{};        ///< by the wall clock
+  std::uint64_t refused{};     ///< cases that the guard ended
+  std::string last_refusal{};  ///< why it ended the last of them
+  Duration passed{};           ///< by the wall clock
   Shown shown{};
   std::vector<Script> worthy{};  ///< scripts that showed something new
   std::vector<Finding> findings{};

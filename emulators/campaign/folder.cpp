@@ -176,6 +176,7 @@ Outcome<CampaignState> Folder::load_any() const {
     state.unsettled = json.value("unsettled", std::uint64_t{});
     state.last_unsettled = json.value("last_unsettled", "");
     state.refused = json.value("refused", std::uint64_t{});
+    state.last_refusal = json.value("last_refusal", "");
     state.passed = duration_in(json, "seconds");
     for (const auto& one : json.value("findings", Json::array())) {
       state.findings.push_back(finding_in(one));
@@ -209,6 +210,7 @@ Outcome<void> Folder::keep(const CampaignState& state) const {
             {"transitions", state.shown.transitions()},
             {"answers", state.shown.answers()},
             {"refused", state.refused},
+            {"last_refusal", state.last_refusal},
             {"unsettled", state.unsettled},
             {"last_unsettled", state.last_unsettled},
             {"findings", Json::array()}};
@@ -245,6 +247,7 @@ CampaignState merged(std::vector<CampaignState> states) {
     all.refused += state.refused;
     all.passed += state.passed;
     if (!state.last_unsettled.empty()) all.last_unsettled = std::move(state.last_unsettled);
+    if (!state.last_refusal.empty()) all.last_refusal = std::move(state.last_refusal);
     std::ranges::move(state.worthy, std::back_inserter(all.worthy));
     for (auto& finding : state.findings) {
       if (names.insert(name_of(finding)).second) all.findings.push_back(std::move(finding));

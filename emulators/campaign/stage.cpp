@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 namespace armjig::campaign {
 namespace {
@@ -121,7 +122,9 @@ Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
   const auto idle = target_->port().now() - last_end_;
   auto played = play_host(target_->port(), script, setup_.how);
   if (!played && played.error().code == ErrorCode::kForbidden) {
-    return tl::unexpected{played.error()};
+    auto refused = std::move(played).error();
+    if (auto why = target_->last_refusal()) refused.hint = std::move(why->reason);
+    return tl::unexpected{std::move(refused)};
   }
   const auto passed = played ? played->passed : std::vector<Instant>{};
   BothHeard both{heard(std::move(played)), {}, lateness_of(script, passed)};

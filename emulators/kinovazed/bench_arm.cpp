@@ -12,9 +12,13 @@ namespace {
 constexpr std::array kAngles{&Pose::pitch, &Pose::yaw, &Pose::roll};
 constexpr std::array kPlaces{&Pose::x, &Pose::y, &Pose::z};
 
-double short_way(double from, double to) noexcept {
-  return std::remainder(to - from, 2 * std::numbers::pi);
+/// The same angle, between half a turn and half a turn. What is there already stays, which the
+/// library takes long to find out.
+double within_a_turn(double angle) noexcept {
+  return std::abs(angle) <= std::numbers::pi ? angle : std::remainder(angle, 2 * std::numbers::pi);
 }
+
+double short_way(double from, double to) noexcept { return within_a_turn(to - from); }
 
 /// Moves a fraction of the way; angles go the short way round and stay within a turn.
 Pose between(const Pose& from, const Pose& to, double fraction) noexcept {
@@ -25,7 +29,7 @@ Pose between(const Pose& from, const Pose& to, double fraction) noexcept {
   }
   for (const auto angle : kAngles) {
     const double turned = from.*angle + fraction * short_way(from.*angle, to.*angle);
-    pose.*angle = static_cast<float>(std::remainder(turned, 2 * std::numbers::pi));
+    pose.*angle = static_cast<float>(within_a_turn(turned));
   }
   return pose;
 }
@@ -188,7 +192,7 @@ void BenchArm::steer(double elapsed) noexcept {
   pose_.y = std::clamp(pose_.y, -0.84F, 0.84F);
   pose_.z = std::clamp(pose_.z, 0.F, 1.14F);
   for (const auto angle : kAngles) {
-    pose_.*angle = static_cast<float>(std::remainder(double{pose_.*angle}, 2 * std::numbers::pi));
+    pose_.*angle = static_cast<float>(within_a_turn(pose_.*angle));
   }
 }
 

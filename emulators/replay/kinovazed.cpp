@@ -16,6 +16,7 @@
 #include "emulators/kinovazed/server.hpp"
 #include "emulators/replay/kept_record.hpp"
 #include "emulators/replay/kinovazed_rules.hpp"
+#include "emulators/replay/watched.hpp"
 #include "emulators/replay/wrong_key.hpp"
 #include "harness/core/hex.hpp"
 
@@ -135,13 +136,14 @@ class Player {
   }
 
   /// Answers what the player stumbled over.
-  std::optional<Problem> play() {
+  std::optional<Problem> play(const Watch<Server>& watch = {}) {
     for (const auto& event : trace_.events) {
       const auto is_good = event.dir == "from_device" ? expect(event) : take(event);
       if (!is_good) {
         return Problem{ErrorCode::kMalformed, fmt::format("{}:{}", trace_.path, event.line),
                        "not a line that a kinovazed recording can have"};
       }
+      if (watch) watch(server_, event.time);
       line_before_ = event.time;
     }
     arrive();
@@ -392,6 +394,14 @@ DeviceTouches touches_of(std::string_view event) {
     for (const auto& call : kArmCallNames) touches.push_back({fmt::format("arm.fail.{}", call), 0});
   }
   return touches;
+}
+
+Outcome<Replayed> replay_watched(const Trace& trace, const Watch<Server>& watch) {
+  const auto recording = read_header(trace);
+  if (!recording) return tl::unexpected{recording.error()};
+  Player player{trace, *recording, 0};
+  if (auto failure = player.play(watch)) return tl::unexpected{*std::move(failure)};
+  return player.result(*recording);
 }
 
 Outcome<Replayed> replay(const Trace& trace) {

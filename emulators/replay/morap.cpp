@@ -16,6 +16,7 @@
 #include "emulators/morap/node.hpp"
 #include "emulators/morap/pen.hpp"
 #include "emulators/replay/kept_record.hpp"
+#include "emulators/replay/watched.hpp"
 #include "emulators/replay/wrong_key.hpp"
 #include "harness/core/hex.hpp"
 
@@ -295,16 +296,18 @@ class Operation {
 
 enum class Ticks : std::uint8_t { kSkipIdle, kEach };
 
-Outcome<Replayed> replay(const Trace& trace, Ticks ticks) {
+Outcome<Replayed> replay(const Trace& trace, Ticks ticks, const Watch<i2c::Bus>& watch = {}) {
   const auto setups = read_header(trace);
   if (!setups) return tl::unexpected{setups.error()};
   auto bench = make_bench(*setups);
   Replayed replayed;
   for (const auto& event : trace.events) {
     if (ticks == Ticks::kEach) bench.tick_until(event.time);
-    if (Operation{event, bench}.run(replayed)) continue;
-    return problem(ErrorCode::kMalformed, fmt::format("{}:{}", trace.path, event.line),
-                   "not a line that a morap recording can have");
+    if (!Operation{event, bench}.run(replayed)) {
+      return problem(ErrorCode::kMalformed, fmt::format("{}:{}", trace.path, event.line),
+                     "not a line that a morap recording can have");
+    }
+    if (watch) watch(bench.bus(), event.time);
   }
   return replayed;
 }
@@ -338,6 +341,9 @@ DeviceTouches touches_of(std::string_view line) {
 
 Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Ticks::kSkipIdle); }
 Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Ticks::kEach); }
+Outcome<Replayed> replay_watched(const Trace& trace, const Watch<i2c::Bus>& watch) {
+  return replay(trace, Ticks::kSkipIdle, watch);
+}
 
 std::string write(std::string_view line, const TraceEvent& actual) {
   auto json = nlohmann::ordered_json::parse(line, nullptr, /*allow_exceptions=*/false);

@@ -11,6 +11,7 @@
 
 #include "emulators/parol6/board.hpp"
 #include "emulators/replay/kept_record.hpp"
+#include "emulators/replay/watched.hpp"
 #include "emulators/replay/wrong_key.hpp"
 #include "harness/core/hex.hpp"
 
@@ -159,7 +160,7 @@ TraceEvent as_event(const Emission& emission) {
 
 enum class Passes : std::uint8_t { kInClosedForm, kEach };
 
-Outcome<Replayed> replay(const Trace& trace, Passes passes) {
+Outcome<Replayed> replay(const Trace& trace, Passes passes, const Watch<Board>& watch = {}) {
   const auto recording = read_header(trace);
   if (!recording) return tl::unexpected{recording.error()};
   Replayed replayed;
@@ -171,6 +172,7 @@ Outcome<Replayed> replay(const Trace& trace, Passes passes) {
       return problem(ErrorCode::kMalformed, fmt::format("{}:{}", trace.path, event.line),
                      "not a line that a parol6 recording can have");
     }
+    if (watch && is_stimulus_in_time) watch(board, event.time);
     const bool is_reaction =
         event.dir == "from_device" || (recording->has_can && event.dir == "can_from_device");
     if (is_reaction) replayed.recorded.push_back(event);
@@ -209,5 +211,8 @@ DeviceTouches touches_of(std::string_view line) {
 
 Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Passes::kInClosedForm); }
 Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Passes::kEach); }
+Outcome<Replayed> replay_watched(const Trace& trace, const Watch<Board>& watch) {
+  return replay(trace, Passes::kInClosedForm, watch);
+}
 
 }  // namespace armjig::parol6::replay

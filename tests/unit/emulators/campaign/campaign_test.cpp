@@ -166,6 +166,7 @@ TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
     ASSERT_TRUE(done) << done.error().hint;
     EXPECT_EQ(state.cases, 30U);
     EXPECT_GT(state.refused, 2U);
+    EXPECT_EQ(state.last_refusal, "was refused");
   }
 }
 
