@@ -4,9 +4,10 @@
 namespace armjig::parol6::conformance {
 namespace {
 
+constexpr Duration kUnseen = 100ms;
+
 /// Stages pass unseen while the program does not run.
 HomingRecord record(BoardBench& board) {
-  constexpr Duration kUnseen = 100ms;
   const auto& log = board.homing_log();
   const auto gap = std::ranges::adjacent_find(log, [](const Answer& before, const Answer& after) {
     return after.asked - before.received > kUnseen;
