@@ -100,6 +100,36 @@ void expect_both_legs(BoardBench& board, const Speeds& from) {
   expect_leg(board, legs.subspan(turn), kDemoOut, standby());
 }
 
+/// Code 69 meets a joint whose way in the demonstration is the other one: it brakes first, with the
+/// acceleration of the demonstration, and then turns.
+template <class Condition>
+void expect_turn(BoardBench& board, std::size_t joint, Condition is_on_its_way) {
+  board.spoil();
+  board.act(with_code(kHome));
+  board.about(fmt::format("the final move of j{}", joint + 1));
+  if (!board.ask_until(idle(), is_on_its_way, 60s)) {
+    return board.fail("the joint to be fast on it", "it is not");
+  }
+  board.act(with_code(kDemo));
+  const auto first = board.ask(with_code(kDemo));
+  const double speed = first.speed[joint].value;
+  const int sign = speed < 0 ? -1 : 1;
+  const auto gone = [&](const Answer& answer) {
+    return (answer.position[joint].value - first.position[joint].value) * sign;
+  };
+  int furthest = 0;
+  const auto has_turned = [&](const Answer& answer) {
+    furthest = std::max(furthest, gone(answer));
+    return gone(answer) < 0;
+  };
+  board.about(fmt::format("j{} in a demonstration that has ended its homing", joint + 1));
+  const bool turns = board.ask_until(with_code(kDemo), has_turned, 8s).has_value();
+  const double wanted = speed * speed / (2.0 * kDemoSpeeds[joint]);
+  board.expect_true(turns && std::abs(furthest - wanted) < 0.05 * wanted + 30,
+                    fmt::format("it to turn after {:.0f} steps", wanted),
+                    turns ? fmt::format("it turns after {}", furthest) : "it does not turn");
+}
+
 constexpr Clause kDemoClauses[] = {
     must("parol6.demo",
          "Code 69 drives all joints out to 6179, -22222, 49812, 0, 4059, 46075 and back to their "
@@ -204,6 +234,22 @@ constexpr Clause kDemoClauses[] = {
                                   fmt::format("a speed of {:.0f} steps/s", wanted),
                                   fmt::format("{} steps/s", later->speed[kJ1].value));
               })),
+
+    variant("turns-down", full(from(kFresh, Hazard::kMove, "J2, on its way up, brakes and turns.",
+                                    [](BoardBench& board) {
+                                      expect_turn(board, kJ2, [](const Answer& answer) {
+                                        return answer.position[kJ2].value > 1200 &&
+                                               answer.speed[kJ2].value > 2600;
+                                      });
+                                    }))),
+    variant("turns-up", full(from(kFresh, Hazard::kMove, "J6, on its way down, brakes and turns.",
+                                  [](BoardBench& board) {
+                                    expect_turn(board, kJ6, [](const Answer& answer) {
+                                      return answer.position[kJ5].value > 1600 &&
+                                             answer.position[kJ6].value < 14'000 &&
+                                             answer.speed[kJ6].value < -3000;
+                                    });
+                                  }))),
 
     must("parol6.demo.once",
          "A demonstration that has ended does not begin again until an idle frame has reset it.",
