@@ -52,7 +52,7 @@ inline constexpr Instant kShort = at(std::chrono::milliseconds{100});
 /// Watches a device as `Promises` say, and lets copies of it go on now and then: after 1, 2, 4, 8
 /// lines and so on. What a copy takes of the heap does not grow with what was played.
 template <class Promises>
-Watch<typename Promises::Device> watch_with(Promises& promises) {
+Onlooker<typename Promises::Device> watch_with(Promises& promises) {
   return [&promises, lines = std::uint64_t{}](auto& device, Instant time) mutable {
     promises.see(device, time);
     if (!std::has_single_bit(++lines)) return;

@@ -24,6 +24,20 @@ Duration longest_loop(const BoardBench& board) {
   return std::clamp<Duration>(board.noise(), 100us, 250us);
 }
 
+struct StepBounds {
+  double least;
+  double most;
+};
+
+/// Of a stretch that begins at one speed and ends at the other.
+StepBounds possible_steps(const BoardBench& board, const Stretch& stretch, int one, int other) {
+  const auto [slow, fast] = std::minmax({std::abs(one), std::abs(other)});
+  const auto shortest = seconds(stretch.after.asked - stretch.before.received);
+  const auto longest = seconds(stretch.after.received - stretch.before.asked);
+  return {shortest * (1 - kClockError) / (step_interval(slow) + seconds(longest_loop(board))),
+          longest * (1 + kClockError) / step_interval(fast)};
+}
+
 }  // namespace
 
 std::string speed_field(std::size_t joint) { return fmt::format("speed.j{}", joint + 1); }
@@ -41,17 +55,33 @@ Stretch run(BoardBench& board, const CommandFrame& frame, Duration time) {
 
 void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, int speed) {
   if (board.is_over()) return;
-  const auto shortest = seconds(stretch.after.asked - stretch.before.received);
-  const auto longest = seconds(stretch.after.received - stretch.before.asked);
-  const auto interval = step_interval(speed);
-  const auto least = shortest * (1 - kClockError) / (interval + seconds(longest_loop(board))) - 1.0;
-  const auto most = longest * (1 + kClockError) / interval + 1.0;
+  const auto possible = possible_steps(board, stretch, speed, speed);
   const auto made = steps(stretch, joint) * (speed < 0 ? -1 : 1);
+  const auto longest = seconds(stretch.after.received - stretch.before.asked);
+  const double least = possible.least - 1.0;
+  const double most = possible.most + 1.0;
   board.expect_in_time(
       {static_cast<double>(made), least, most, "steps"},
       fmt::format("j{} to make {:.0f} to {:.0f} steps {} at {} steps/s in {:.1f} ms", joint + 1,
                   std::ceil(least), most, speed < 0 ? "down" : "up", speed, longest * 1e3),
       fmt::format("{} steps", steps(stretch, joint)));
+}
+
+void expect_pace(BoardBench& board, std::span<const Answer> answers, std::size_t joint) {
+  if (board.is_over() || answers.empty()) return;
+  StepBounds total{-2.0, 2.0};
+  for (std::size_t i = 1; i < answers.size(); ++i) {
+    const auto slow = answers[i - 1].speed[joint].value;
+    const auto fast = answers[i].speed[joint].value;
+    const auto possible = possible_steps(board, {answers[i - 1], answers[i]}, slow, fast);
+    total.least += possible.least;
+    total.most += possible.most;
+  }
+  const auto made = steps({answers.front(), answers.back()}, joint);
+  board.expect_in_time({static_cast<double>(std::abs(made)), total.least, total.most, "steps"},
+                       fmt::format("j{} to make {:.0f} to {:.0f} steps at the speeds that it says",
+                                   joint + 1, std::ceil(total.least), total.most),
+                       fmt::format("{} steps", std::abs(made)));
 }
 
 void expect_still(BoardBench& board, const Stretch& stretch) {

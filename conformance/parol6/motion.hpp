@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "conformance/parol6/board_bench.hpp"
 #include "harness/core/time.hpp"
@@ -25,6 +26,10 @@ Stretch run(BoardBench& board, const CommandFrame& frame, Duration time);
 /// Expects the joint to have made the steps of that speed, as far as times and the length of the
 /// board's loop (100 us, or up to 250 us if answers take that long) leave it open.
 void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, int speed);
+
+/// Expects the joint to have made the steps of the speeds that the answers report, which grow or
+/// shrink from one to the next.
+void expect_pace(BoardBench& board, std::span<const Answer> answers, std::size_t joint);
 
 /// Expects that no joint moves while a frame is repeated for a time.
 void expect_still(BoardBench& board, const CommandFrame& frame, Duration time);

@@ -136,7 +136,7 @@ class Player {
   }
 
   /// Answers what the player stumbled over.
-  std::optional<Problem> play(const Watch<Server>& watch = {}) {
+  std::optional<Problem> play(const Onlooker<Server>& watch = {}) {
     for (const auto& event : trace_.events) {
       const auto is_good = event.dir == "from_device" ? expect(event) : take(event);
       if (!is_good) {
@@ -396,7 +396,7 @@ DeviceTouches touches_of(std::string_view event) {
   return touches;
 }
 
-Outcome<Replayed> replay_watched(const Trace& trace, const Watch<Server>& watch) {
+Outcome<Replayed> replay_watched(const Trace& trace, const Onlooker<Server>& watch) {
   const auto recording = read_header(trace);
   if (!recording) return tl::unexpected{recording.error()};
   Player player{trace, *recording, 0};

@@ -296,7 +296,7 @@ class Operation {
 
 enum class Ticks : std::uint8_t { kSkipIdle, kEach };
 
-Outcome<Replayed> replay(const Trace& trace, Ticks ticks, const Watch<i2c::Bus>& watch = {}) {
+Outcome<Replayed> replay(const Trace& trace, Ticks ticks, const Onlooker<i2c::Bus>& watch = {}) {
   const auto setups = read_header(trace);
   if (!setups) return tl::unexpected{setups.error()};
   auto bench = make_bench(*setups);
@@ -341,7 +341,7 @@ DeviceTouches touches_of(std::string_view line) {
 
 Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Ticks::kSkipIdle); }
 Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Ticks::kEach); }
-Outcome<Replayed> replay_watched(const Trace& trace, const Watch<i2c::Bus>& watch) {
+Outcome<Replayed> replay_watched(const Trace& trace, const Onlooker<i2c::Bus>& watch) {
   return replay(trace, Ticks::kSkipIdle, watch);
 }
 

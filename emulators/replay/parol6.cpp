@@ -160,7 +160,7 @@ TraceEvent as_event(const Emission& emission) {
 
 enum class Passes : std::uint8_t { kInClosedForm, kEach };
 
-Outcome<Replayed> replay(const Trace& trace, Passes passes, const Watch<Board>& watch = {}) {
+Outcome<Replayed> replay(const Trace& trace, Passes passes, const Onlooker<Board>& watch = {}) {
   const auto recording = read_header(trace);
   if (!recording) return tl::unexpected{recording.error()};
   Replayed replayed;
@@ -211,7 +211,7 @@ DeviceTouches touches_of(std::string_view line) {
 
 Outcome<Replayed> replay(const Trace& trace) { return replay(trace, Passes::kInClosedForm); }
 Outcome<Replayed> replay_plainly(const Trace& trace) { return replay(trace, Passes::kEach); }
-Outcome<Replayed> replay_watched(const Trace& trace, const Watch<Board>& watch) {
+Outcome<Replayed> replay_watched(const Trace& trace, const Onlooker<Board>& watch) {
   return replay(trace, Passes::kInClosedForm, watch);
 }
 

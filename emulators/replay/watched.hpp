@@ -14,23 +14,23 @@ namespace armjig {
 /// Sees an emulated device after each line of a recording, at the time of that line. It may put a
 /// copy of the device in its place, which must make no difference.
 template <class Device>
-using Watch = std::function<void(Device& device, Instant time)>;
+using Onlooker = std::function<void(Device& device, Instant time)>;
 
 namespace parol6::replay {
 /// `replay` of the device, watched.
 [[nodiscard]] Outcome<Replayed> replay_watched(const Trace& trace,
-                                               const Watch<emulation::Board>& watch);
+                                               const Onlooker<emulation::Board>& watch);
 }  // namespace parol6::replay
 
 namespace morap::replay {
 /// `replay` of what is on the bus, watched. Nodes have the numbers of the recording's header.
-[[nodiscard]] Outcome<Replayed> replay_watched(const Trace& trace, const Watch<i2c::Bus>& watch);
+[[nodiscard]] Outcome<Replayed> replay_watched(const Trace& trace, const Onlooker<i2c::Bus>& watch);
 }  // namespace morap::replay
 
 namespace kinovazed::replay {
 /// `replay` of the server, watched; where threads race, in one order only.
 [[nodiscard]] Outcome<Replayed> replay_watched(const Trace& trace,
-                                               const Watch<emulation::Server>& watch);
+                                               const Onlooker<emulation::Server>& watch);
 }  // namespace kinovazed::replay
 
 }  // namespace armjig

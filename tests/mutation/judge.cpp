@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs with an emulator that comes in a shared object (tests/mutation/judged.hpp).
 //
-//   mutation_judge judge DEVICE OBJECT TARGET FOLDER...
+//   mutation_judge judge DEVICE OBJECT TARGET quick|full|none FOLDER...
 //
 // tells whether a recording in those folders tells it from the emulator of this program, and
-// whether the suite of its device finds it out. Prints a line "differs: RECORDING" or "same", then
-// "killed: CASE" or "survived: N cases passed". The second is left out where the first says "same",
-// unless ARMJIG_JUDGE_ALL is set.
+// whether the suite of its device finds it out, in that tier. Prints a line "differs: RECORDING" or
+// "same", then "killed: CASE" or "survived: N cases passed". The second is left out where the first
+// says "same", unless ARMJIG_JUDGE_ALL is set, and without a tier.
 //
 //   mutation_judge serve DEVICE OBJECT ARGUMENT...
 //
@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -77,12 +78,13 @@ Outcome<std::string> told_apart_by(const cli::Device& device,
 }
 
 /// What the suite says: the first case that fails, or how many passed.
-Outcome<std::string> judgement(const cli::Device& device, std::string_view text) {
+Outcome<std::string> judgement(const cli::Device& device, std::string_view text, Tier tier) {
   auto target = parse_target(text);
   if (!target) return tl::unexpected{target.error()};
   const auto bench = cli::open_bench(device, {.target = *std::move(target)});
   if (!bench) return "killed: the start, " + describe(bench.error());
   RunOptions run;
+  run.selection.tier = tier;
   run.stops_at_first_failure = true;
   run.permissions = Permissions::all();
   const auto report = run_suite(device.suite(), **bench, run, [](const ReportRow&) {});
@@ -95,14 +97,24 @@ Outcome<std::string> judgement(const cli::Device& device, std::string_view text)
                      std::ranges::count(report.rows, Verdict::kPass, &ReportRow::verdict));
 }
 
-Outcome<void> judge(const cli::Device& device, const std::string& target,
+Outcome<void> judge(const cli::Device& device, const std::string& target, std::optional<Tier> tier,
                     const std::vector<std::string>& folders) {
   const auto where = told_apart_by(device, folders);
   if (!where) return tl::unexpected{where.error()};
   fmt::print("{}\n", where->empty() ? "same" : "differs: " + *where);
   std::fflush(stdout);
-  if (where->empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr) return {};
-  return judgement(device, target).map([](const std::string& found) { fmt::print("{}\n", found); });
+  if (!tier || (where->empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr)) return {};
+  return judgement(device, target, *tier).map([](const std::string& found) {
+    fmt::print("{}\n", found);
+  });
+}
+
+/// Of those that it may have, one is none.
+std::optional<std::optional<Tier>> find_tier(std::string_view word) {
+  if (word == "quick") return Tier::kQuick;
+  if (word == "full") return Tier::kFull;
+  if (word == "none") return std::optional<Tier>{};
+  return std::nullopt;
 }
 
 int serve(const cli::Device& device, char* program, std::span<char*> arguments) {
@@ -126,8 +138,11 @@ int run(std::span<char*> arguments) {
   if (std::string_view{arguments[1]} == "serve") {
     return serve(device, arguments[0], arguments.subspan(4));
   }
-  const auto folders = arguments.subspan(5);
-  const auto done = judge(device, arguments[4], {folders.begin(), folders.end()});
+  if (arguments.size() < 6) return kWrongUsage;
+  const auto tier = find_tier(arguments[5]);
+  if (!tier) return kWrongUsage;
+  const auto folders = arguments.subspan(6);
+  const auto done = judge(device, arguments[4], *tier, {folders.begin(), folders.end()});
   if (done) return 0;
   fmt::print(stderr, "{}\n", describe(done.error()));
   return kWrongUsage;

@@ -34,6 +34,102 @@ Answer run_back(BoardBench& board) {
   return answer.value_or(Answer{});
 }
 
+/// Where neither the first steps of a leg nor its last ones are judged, nor the length of a step.
+constexpr int kSomeSteps = 200;
+
+/// The answers of a leg with which a joint is on its way.
+std::vector<Answer> on_the_way(std::span<const Answer> leg, std::size_t joint, int from, int to) {
+  const auto sign = to < from ? -1 : 1;
+  std::vector<Answer> answers;
+  std::ranges::copy_if(leg, std::back_inserter(answers), [&](const Answer& answer) {
+    const auto at = answer.position[joint].value;
+    return (at - from) * sign > kSomeSteps && (to - at) * sign > kSomeSteps;
+  });
+  return answers;
+}
+
+/// Each joint gets faster, keeps its maximum if there is way enough, and gets slower. None goes the
+/// other way at first, or much beyond its end.
+void expect_leg(BoardBench& board, std::span<const Answer> leg, const Speeds& from,
+                const Speeds& to) {
+  constexpr double kTolerance = 0.03;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    board.about(fmt::format("j{} from {} to {} in the demonstration", j + 1, from[j], to[j]));
+    constexpr int kBeyond = 2;  // the last step of a ramp may be one too many, and is taken back
+    const auto furthest = from[j] == to[j] ? to[j] : to[j] + (to[j] < from[j] ? -kBeyond : kBeyond);
+    const auto [lowest, highest] = std::minmax({from[j], furthest});
+    for (const auto& answer : leg) board.expect_between(answer, position_field(j), lowest, highest);
+    if (from[j] == to[j]) continue;
+    const double most = kDemoSpeeds[j];
+    const auto answers = on_the_way(leg, j, from[j], to[j]);
+    board.expect_true(answers.size() > 10, "a ramp for a while",
+                      fmt::format("{} answers show it", answers.size()));
+    for (const auto& answer : answers) {
+      const auto at = answer.position[j].value;
+      const auto nearest_end = std::min(std::abs(at - from[j]), std::abs(to[j] - at));
+      const auto wanted = std::min(most, ramp_speed(most, nearest_end));
+      const auto speed = answer.speed[j].value * (to[j] < from[j] ? -1 : 1);
+      board.expect_true(std::abs(speed - wanted) <= kTolerance * wanted + 20,
+                        fmt::format("a speed of {:.0f} steps/s at {}", wanted, at),
+                        fmt::format("{} steps/s", speed));
+    }
+    expect_pace(board, answers, j);
+  }
+}
+
+constexpr Speeds standby() {
+  Speeds places{};
+  std::ranges::transform(kStandby, places.begin(), &Steps::value);
+  return places;
+}
+
+/// The whole demonstration, from where the joints stand.
+void expect_both_legs(BoardBench& board, const Speeds& from) {
+  board.spoil();
+  std::vector<Answer> log;
+  std::size_t turn = 0;
+  const auto end = board.now() + 2 * kLeg;
+  do {
+    log.push_back(board.ask(with_code(kDemo), 3s));
+    if (log.back().received - log.back().asked > 1s) turn = log.size();
+    board.pause(kFramePeriod);
+  } while ((turn == 0 || log.back().position != kStandby) && !board.is_over() && !board.error() &&
+           board.now() < end);
+  const std::span<const Answer> legs{log};
+  expect_leg(board, legs.first(turn), from, kDemoOut);
+  expect_leg(board, legs.subspan(turn), kDemoOut, standby());
+}
+
+/// Code 69 meets a joint whose way in the demonstration is the other one: it brakes first, with the
+/// acceleration of the demonstration, and then turns.
+template <class Condition>
+void expect_turn(BoardBench& board, std::size_t joint, Condition is_on_its_way) {
+  board.spoil();
+  board.act(with_code(kHome));
+  board.about(fmt::format("the final move of j{}", joint + 1));
+  if (!board.ask_until(idle(), is_on_its_way, 60s)) {
+    return board.fail("the joint to be fast on it", "it is not");
+  }
+  board.act(with_code(kDemo));
+  const auto first = board.ask(with_code(kDemo));
+  const double speed = first.speed[joint].value;
+  const int sign = speed < 0 ? -1 : 1;
+  const auto gone = [&](const Answer& answer) {
+    return (answer.position[joint].value - first.position[joint].value) * sign;
+  };
+  int furthest = 0;
+  const auto has_turned = [&](const Answer& answer) {
+    furthest = std::max(furthest, gone(answer));
+    return gone(answer) < 0;
+  };
+  board.about(fmt::format("j{} in a demonstration that has ended its homing", joint + 1));
+  const bool turns = board.ask_until(with_code(kDemo), has_turned, 8s).has_value();
+  const double wanted = speed * speed / (2.0 * kDemoSpeeds[joint]);
+  board.expect_true(turns && std::abs(furthest - wanted) < 0.05 * wanted + 30,
+                    fmt::format("it to turn after {:.0f} steps", wanted),
+                    turns ? fmt::format("it turns after {}", furthest) : "it does not turn");
+}
+
 constexpr Clause kDemoClauses[] = {
     must("parol6.demo",
          "Code 69 drives all joints out to 6179, -22222, 49812, 0, 4059, 46075 and back to their "
@@ -99,6 +195,62 @@ constexpr Clause kDemoClauses[] = {
            if (fast) board.expect_between(*fast, "speed.j1", 5850, 6000);
          }),
 
+    must("parol6.demo.ramps",
+         "On both legs of the demonstration all joints accelerate with, and go at most at, 6000, "
+         "4000, 3500, 3500, 3500 and 7500.",
+         "firmware, vector S8", Profiles::kFirmware),
+    full(from(kFresh, Hazard::kMove, "Five joints keep to their ramps, out and back.",
+              [](BoardBench& board) { expect_both_legs(board, {}); })),
+    variant("homed", full(from(kHomed, Hazard::kMove, "And so they do from where homing ends.",
+                               [](BoardBench& board) { expect_both_legs(board, standby()); }))),
+
+    must("parol6.demo.takes-over",
+         "Joints that homing leads to their final positions go on from there with the maxima and "
+         "accelerations of the demonstration.",
+         "firmware: 69 goes on with whatever the steppers have", Profiles::kFirmware),
+    full(from(kFresh, Hazard::kMove, "J1 gets faster with 6000 steps/s^2 after 4500.",
+              [](BoardBench& board) {
+                board.spoil();
+                board.act(with_code(kHome));
+                const auto is_on_its_way = [](const Answer& answer) {
+                  return answer.position[kJ1].value > 600 && answer.speed[kJ1].value > 2200;
+                };
+                board.about("the final move of j1");
+                if (!board.ask_until(idle(), is_on_its_way, 30s)) {
+                  return board.fail("j1 to get faster on it", "it does not");
+                }
+                board.act(with_code(kDemo));
+                const auto first = board.ask(with_code(kDemo));
+                const auto is_far = [](const Answer& answer) {
+                  return answer.position[kJ1].value > 2400;
+                };
+                const auto later = board.ask_until(with_code(kDemo), is_far, 3s);
+                board.about("j1 in a demonstration that has ended its homing");
+                if (!later) return board.fail("j1 to go on", "it does not");
+                const auto way = later->position[kJ1].value - first.position[kJ1].value;
+                const auto wanted =
+                    std::hypot(first.speed[kJ1].value, ramp_speed(kDemoSpeeds[kJ1], way));
+                board.expect_true(std::abs(later->speed[kJ1].value - wanted) < 0.03 * wanted,
+                                  fmt::format("a speed of {:.0f} steps/s", wanted),
+                                  fmt::format("{} steps/s", later->speed[kJ1].value));
+              })),
+
+    variant("turns-down", full(from(kFresh, Hazard::kMove, "J2, on its way up, brakes and turns.",
+                                    [](BoardBench& board) {
+                                      expect_turn(board, kJ2, [](const Answer& answer) {
+                                        return answer.position[kJ2].value > 1200 &&
+                                               answer.speed[kJ2].value > 2600;
+                                      });
+                                    }))),
+    variant("turns-up", full(from(kFresh, Hazard::kMove, "J6, on its way down, brakes and turns.",
+                                  [](BoardBench& board) {
+                                    expect_turn(board, kJ6, [](const Answer& answer) {
+                                      return answer.position[kJ5].value > 1600 &&
+                                             answer.position[kJ6].value < 14'000 &&
+                                             answer.speed[kJ6].value < -3000;
+                                    });
+                                  }))),
+
     must("parol6.demo.once",
          "A demonstration that has ended does not begin again until an idle frame has reset it.",
          "firmware", Profiles::kFirmware),
@@ -128,6 +280,19 @@ constexpr Clause kDemoClauses[] = {
            const auto after = board.keep_asking(with_code(kDemo), 200ms);
            board.about("code 69 again");
            board.expect_between(after, "position.j3", before.position[2].value + 100, INT32_MAX);
+         }),
+
+    must("parol6.demo.stopped-joints",
+         "Joints that a jog of speed 0 has stopped in the demonstration stay where they are, and "
+         "their leg does not end.",
+         "firmware: 69 goes on with whatever the steppers have", Profiles::kFirmware),
+    from(kFresh, Hazard::kMove, "No joint moves with code 69 after a jog without speeds.",
+         [](BoardBench& board) {
+           board.spoil();
+           board.keep_asking(with_code(kDemo), 500ms);
+           board.act(jog({}));
+           board.about("code 69 after a jog without speeds in a demonstration");
+           expect_still(board, with_code(kDemo), 500ms);
          }),
 
     must("parol6.demo.lowers-maximum",

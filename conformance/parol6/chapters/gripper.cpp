@@ -527,6 +527,40 @@ constexpr Clause kGripperClauses[] = {
         },
         kFull),
 
+    must("parol6.gripper.whose-frame",
+         "Calibration and clear-error go to the node of the gripper id, as set-points do.",
+         "firmware: one id for all three"),
+    variant("clear-error",
+            grip(
+                "Clear-error for node 3 leaves a calibration alone, for node 0 it does not.",
+                [](BoardBench& board) {
+                  prepare(board, 200);
+                  board.act(with_gripper({.mode = gripper_mode::kCalibrate}));
+                  board.keep_asking(idle(), 100ms);
+                  board.act(with_gripper({.mode = gripper_mode::kClearError, .id = 3}));
+                  board.about("clear-error for node 3 in a calibration");
+                  expect_moves(board, {});
+                  constexpr std::uint8_t kOtherBits = 0x03;
+                  board.act(
+                      with_gripper({.command = kOtherBits, .mode = gripper_mode::kClearError}));
+                  board.about("clear-error for node 0 in a calibration");
+                  expect_stands(board, {});
+                },
+                kFull)),
+    variant("calibration",
+            grip(
+                "A calibration for node 3 leaves this one calibrated.",
+                [](BoardBench& board) {
+                  prepare(board, 60);
+                  board.act(with_gripper({.mode = gripper_mode::kCalibrate, .id = 3}));
+                  board.act(idle());
+                  board.act(idle());
+                  board.about("a calibration for node 3");
+                  board.expect_bits(board.ask(idle()), "gripper.status",
+                                    gripper_status::kCalibrated, gripper_status::kCalibrated);
+                },
+                kFull)),
+
     must("parol6.gripper.while-disabled",
          "Set-points reach the gripper also while the board is disabled.",
          "firmware: sent when a frame is accepted"),

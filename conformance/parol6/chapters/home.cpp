@@ -91,6 +91,32 @@ void expect_second_run(BoardBench& board) {
   }
 }
 
+/// Pauses leave out nothing and add nothing, whatever is under way.
+void expect_paused_run(BoardBench& board) {
+  const auto first = board.homing_log().back();
+  std::vector<Answer> log{board.ask(idle())};
+  board.act(with_code(kHome));
+  const auto is_over = [&](const Answer& answer) {
+    log.push_back(answer);
+    return is_homed(answer);
+  };
+  const auto end = board.now() + 120s;
+  while (!board.is_over() && !board.error() && board.now() < end) {
+    if (board.ask_until(idle(), is_over, 300ms)) break;
+    board.act(with_code(42));
+    board.about("code 42 in a run of homing");
+    expect_still(board, with_code(42), 20ms);
+    board.act(idle());
+  }
+  board.about("a run of homing with pauses");
+  const std::vector wanted{kNoneHomed, kFirstThreeHomed, kFirstFourHomed, kAllHomed};
+  board.expect_true(HomingRecord{log}.bits() == wanted, "homed = 03 E3 F3 FF, one after the other",
+                    "others");
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    board.expect_same(log.back(), position_field(j), first);
+  }
+}
+
 constexpr Clause kHomeClauses[] = {
     must("parol6.home.idle-speeds-ignored", "Speeds in idle frames do not disturb homing.",
          "firmware: 255 leaves them alone"),
@@ -129,6 +155,10 @@ constexpr Clause kHomeClauses[] = {
            expect_seeks(board, idle());
            board.act(with_code(kEnable));
          }),
+
+    variant("every-stage", full(from(kHomed, Hazard::kHome,
+                                     "A run that code 42 pauses every 300 ms ends like any other.",
+                                     on<expect_paused_run>))),
 
     must("parol6.home.ended-by-enable", "Enable ends homing: idle frames do not resume it.",
          "firmware"),

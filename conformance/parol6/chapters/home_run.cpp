@@ -4,7 +4,19 @@
 namespace armjig::parol6::conformance {
 namespace {
 
-HomingRecord record(BoardBench& board) { return HomingRecord{board.homing_log()}; }
+constexpr Duration kUnseen = 100ms;
+
+/// Stages pass unseen while the program does not run.
+HomingRecord record(BoardBench& board) {
+  const auto& log = board.homing_log();
+  const auto gap = std::ranges::adjacent_find(log, [](const Answer& before, const Answer& after) {
+    return after.asked - before.received > kUnseen;
+  });
+  if (gap != log.end()) {
+    board.leave_open("this machine did not look at the run of homing for more than 100 ms");
+  }
+  return HomingRecord{log};
+}
 
 /// While these were homed, these joints stood where they stood at first.
 void expect_unmoved(BoardBench& board, const HomingRecord& run, std::uint8_t homed,
@@ -59,21 +71,37 @@ void expect_rest(BoardBench& board, std::uint8_t homed, std::size_t joint) {
 /// Of a final move.
 enum class Part : std::uint8_t { kBegin, kEnd };
 
-/// Judged at a quarter of the way, where neither the first steps nor the maximum matter much.
-void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int from, int to,
-                 double acceleration, Part part = Part::kBegin) {
-  constexpr double kTolerance = 0.03;
-  int judged = 0;
+/// Steps from the beginning, or to the end.
+std::int32_t way_on_ramp(const Answer& answer, std::size_t joint, int from, int to, Part part) {
+  const auto at = position(answer, joint);
+  return (part == Part::kBegin ? at - from : to - at) * (to > from ? 1 : -1);
+}
+
+/// Answers from the first third of a final move, or from its last, where the maximum does not
+/// matter; the first steps are left out.
+std::vector<Answer> on_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int from,
+                            int to, Part part) {
   const auto sign = to > from ? 1 : -1;
+  std::vector<Answer> answers;
   for (const auto& answer : record(board).with_bits(homed)) {
-    const auto at = position(answer, joint);
-    const auto way = (part == Part::kBegin ? at - from : to - at) * sign;
+    const auto way = way_on_ramp(answer, joint, from, to, part);
     const auto speed = answer.speed[joint].value * sign;
     const bool is_on_ramp = way > 200 && way < std::abs(to - from) / 3 && speed > 0;
     // What homing sets before and after a ramp has the same positions, but not such speeds.
     const bool is_set = speed == 2050 || speed == 4050 || speed == 5550 || speed == 1050;
-    if (!is_on_ramp || is_set) continue;
-    ++judged;
+    if (is_on_ramp && !is_set) answers.push_back(answer);
+  }
+  return answers;
+}
+
+void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int from, int to,
+                 double acceleration, Part part = Part::kBegin) {
+  constexpr double kTolerance = 0.03;
+  const auto sign = to > from ? 1 : -1;
+  const auto answers = on_ramp(board, homed, joint, from, to, part);
+  for (const auto& answer : answers) {
+    const auto way = way_on_ramp(answer, joint, from, to, part);
+    const auto speed = answer.speed[joint].value * sign;
     const auto wanted = ramp_speed(acceleration, way);
     board.about(fmt::format("j{} {} steps {} its final move", joint + 1, way,
                             part == Part::kBegin ? "into" : "before the end of"));
@@ -81,13 +109,38 @@ void expect_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint, int f
                       fmt::format("a speed of {:.0f} steps/s", wanted),
                       fmt::format("{} steps/s", speed));
   }
-  board.expect_true(judged >= 3, fmt::format("j{} to make a final move on a ramp", joint + 1),
-                    fmt::format("{} answers show it", judged));
+  board.expect_true(answers.size() >= 3,
+                    fmt::format("j{} to make a final move on a ramp", joint + 1),
+                    fmt::format("{} answers show it", answers.size()));
 }
 
 void expect_final_ramp(BoardBench& board, std::uint8_t homed, std::size_t joint,
                        Part part = Part::kBegin) {
   expect_ramp(board, homed, joint, 0, kHoming[joint].end, kHoming[joint].acceleration, part);
+}
+
+/// On the first and the last third of a final move.
+void expect_ramp_pace(BoardBench& board, std::uint8_t homed, std::size_t joint, int from, int to) {
+  for (const auto part : {Part::kBegin, Part::kEnd}) {
+    board.about(part == Part::kBegin ? "a final move that gets faster"
+                                     : "a final move that gets slower");
+    expect_pace(board, on_ramp(board, homed, joint, from, to, part), joint);
+  }
+}
+
+/// While `leader` backs off, and the joint has not got there yet. Only the magnitude of the speed
+/// that is set matters.
+void expect_back_off_pace(BoardBench& board, std::uint8_t homed, std::size_t joint,
+                          std::size_t leader) {
+  const auto target = kHoming[joint].back_off_to;
+  auto answers = record(board).with_speed(homed, leader, kHoming[leader].back_off);
+  std::erase_if(answers, [&](const Answer& answer) { return position(answer, joint) == target; });
+  board.about("the back-off from the switch");
+  if (answers.size() < 3) {
+    return board.fail(fmt::format("j{} to back off for a while", joint + 1), "it does not");
+  }
+  const auto speed = std::abs(kHoming[joint].back_off);
+  expect_speed(board, {answers.front(), answers.back()}, joint, target < 0 ? -speed : speed);
 }
 
 /// The first seek is that short or longer as the arm stood; the other two have their length.
@@ -203,6 +256,36 @@ constexpr Clause kHomeRunClauses[] = {
            }
            expect_final_ramp(board, kFirstThreeHomed, kJ4, Part::kEnd);
            expect_final_ramp(board, kFirstFourHomed, kJ5, Part::kEnd);
+         }),
+
+    must("parol6.home.ramp-pace",
+         "On a final move a joint makes the steps of the speed that it reports, which changes with "
+         "each of them.",
+         "firmware, vectors S1 to S7; arithmetic"),
+    from(kHomed, Hazard::kObserve, "All joints were as fast as they said at the ends of moves.",
+         [](BoardBench& board) {
+           const auto expect_final = [&](std::uint8_t homed, std::size_t joint) {
+             expect_ramp_pace(board, homed, joint, 0, kHoming[joint].end);
+           };
+           for (const auto joint : {kJ1, kJ2, kJ3}) expect_final(kNoneHomed, joint);
+           expect_final(kFirstThreeHomed, kJ4);
+           expect_final(kFirstFourHomed, kJ5);
+           expect_ramp_pace(board, kFirstFourHomed, kJ6, 0, kParkingJ6);
+         }),
+
+    must("parol6.home.back-off-pace",
+         "Joints back off as fast as the speeds say that are set: J1 to J3 at 2050 steps/s, J4 to "
+         "J6 at 4050.",
+         "firmware; arithmetic"),
+    from(kHomed, Hazard::kObserve, "All joints backed off as fast as they should.",
+         [](BoardBench& board) {
+           for (const auto joint : {kJ1, kJ2, kJ3}) {
+             expect_back_off_pace(board, kNoneHomed, joint, kJ2);
+           }
+           expect_back_off_pace(board, kFirstThreeHomed, kJ4, kJ4);
+           for (const auto joint : {kJ5, kJ6}) {
+             expect_back_off_pace(board, kFirstFourHomed, joint, joint);
+           }
          }),
 
     must("parol6.home.waiting-speeds",

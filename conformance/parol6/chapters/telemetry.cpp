@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <numeric>
+
 #include "conformance/parol6/cases.hpp"
 
 namespace armjig::parol6::conformance {
@@ -234,6 +236,20 @@ constexpr Clause kTelemetryClauses[] = {
                               before = answer;
                             }
                           })),
+    /// Intervals are whole passes, and a pass may be a whole number of ticks.
+    variant("single-ticks",
+            look("Forty intervals have no common divisor that is shorter than a pass.",
+                 [](BoardBench& board) {
+                   constexpr int kTwentyMicroseconds = 14;
+                   int divisor = 0;
+                   for (int i = 0; i < 40; ++i) {
+                     board.pause(1000us + i * 37us);
+                     divisor = std::gcd(divisor, int{board.ask(idle()).timing});
+                   }
+                   board.expect_true(divisor == 1 || divisor >= kTwentyMicroseconds,
+                                     "intervals that are counted in single ticks",
+                                     fmt::format("all are multiples of {} ticks", divisor));
+                 })),
 
     variant("any-code", from(kEnabled, Hazard::kState, "Frames of any code begin an interval.",
                              [](BoardBench& board) {
