@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 
@@ -82,6 +83,15 @@ void expect_pace(BoardBench& board, std::span<const Answer> answers, std::size_t
                        fmt::format("j{} to make {:.0f} to {:.0f} steps at the speeds that it says",
                                    joint + 1, std::ceil(total.least), total.most),
                        fmt::format("{} steps", std::abs(made)));
+}
+
+void expect_seen(BoardBench& board, std::span<const Answer> answers, std::string_view what) {
+  const auto gap =
+      std::ranges::adjacent_find(answers, [](const Answer& before, const Answer& after) {
+        return after.asked - before.received > std::chrono::milliseconds{100};
+      });
+  if (gap == answers.end()) return;
+  board.leave_open(fmt::format("this machine did not look at {} for more than 100 ms", what));
 }
 
 void expect_still(BoardBench& board, const Stretch& stretch) {

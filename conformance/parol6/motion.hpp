@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "conformance/parol6/board_bench.hpp"
 #include "harness/core/time.hpp"
@@ -30,6 +31,10 @@ void expect_speed(BoardBench& board, const Stretch& stretch, std::size_t joint, 
 /// Expects the joint to have made the steps of the speeds that the answers report, which grow or
 /// shrink from one to the next.
 void expect_pace(BoardBench& board, std::span<const Answer> answers, std::size_t joint);
+
+/// Leaves the case open if this machine did not ask for more than 100 ms: stages and ramps of
+/// `what` may have passed unseen.
+void expect_seen(BoardBench& board, std::span<const Answer> answers, std::string_view what);
 
 /// Expects that no joint moves while a frame is repeated for a time.
 void expect_still(BoardBench& board, const CommandFrame& frame, Duration time);

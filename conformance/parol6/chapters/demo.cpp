@@ -96,6 +96,7 @@ void expect_both_legs(BoardBench& board, const Speeds& from) {
   } while ((turn == 0 || log.back().position != kStandby) && !board.is_over() && !board.error() &&
            board.now() < end);
   const std::span<const Answer> legs{log};
+  expect_seen(board, legs, "the demonstration");
   expect_leg(board, legs.first(turn), from, kDemoOut);
   expect_leg(board, legs.subspan(turn), kDemoOut, standby());
 }

@@ -4,17 +4,9 @@
 namespace armjig::parol6::conformance {
 namespace {
 
-constexpr Duration kUnseen = 100ms;
-
-/// Stages pass unseen while the program does not run.
 HomingRecord record(BoardBench& board) {
   const auto& log = board.homing_log();
-  const auto gap = std::ranges::adjacent_find(log, [](const Answer& before, const Answer& after) {
-    return after.asked - before.received > kUnseen;
-  });
-  if (gap != log.end()) {
-    board.leave_open("this machine did not look at the run of homing for more than 100 ms");
-  }
+  expect_seen(board, log, "the run of homing");
   return HomingRecord{log};
 }
 
