@@ -6,14 +6,13 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <iostream>
-#include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "fuzz/answers.hpp"
 #include "fuzz/input.hpp"
 #include "fuzz/require.hpp"
 #include "harness/core/emulation.hpp"
@@ -105,31 +104,20 @@ void apply(Device& device, const Step& step) {
 inline ConnectionId connection_of(const SentBytes& /*sent*/) { return 0; }
 inline ConnectionId connection_of(const ServerEvent& sent) { return sent.connection; }
 
-/// Times never decrease, and all that is said is messages.
-template <class Sent>
-void require_sound(std::span<const Sent> all, MakeDissector make_dissector) {
-  std::map<ConnectionId, std::unique_ptr<Dissector>> dissectors;
-  std::vector<Message> messages;
-  Instant last{};
-  for (const Sent& sent : all) {
-    require(sent.time >= last, "times never decrease");
-    last = sent.time;
-    auto& dissector = dissectors[connection_of(sent)];
-    if (!dissector) dissector = make_dissector();
-    dissector->feed(Direction::kFromDevice, sent.time, sent.bytes, messages);
-  }
-  for (const auto& message : messages) {
-    if (!message.fault.empty()) std::cerr << to_text(message) << '\n';
-    require(message.fault.empty(), "every answer is a message");
-  }
-}
+/// A device that everything has happened to.
+template <class Device>
+struct Hosted {
+  Device device;
+  std::size_t pieces{};  ///< that its clients said
+};
 
 /// Lets happen to `fresh`, whose time is `begin`, what the input says, for at most `longest`; from
-/// its first copy on, to the copy, too. Answers the device at its end.
+/// its first copy on, to the copy, too.
 template <class Device>
-Device check_hosted(const Device& fresh, Instant begin, Input input, Duration longest,
-                    const Surroundings& around) {
+Hosted<Device> check_hosted(const Device& fresh, Instant begin, Input input, Duration longest,
+                            const Surroundings& around) {
   auto device = fresh;
+  std::size_t pieces = 0;
   std::optional<Device> copy;
   const auto happen = [](Device& to, const Step& step) {
     if (step.kind == Step::Kind::kHand) {
@@ -143,18 +131,22 @@ Device check_hosted(const Device& fresh, Instant begin, Input input, Duration lo
   while (!input.is_empty() && now < begin + longest) {
     const auto step = next_step(input, now, around);
     now = step.time;
+    if (step.kind == Step::Kind::kSay) ++pieces;
     happen(device, step);
     if (copy) happen(*copy, step);
     if (step.kind == Step::Kind::kCopy && !copy) copy = device;
   }
-  require_sound(device.sent(), around.make_dissector);
+  Answers answers{around.make_dissector};
+  for (const auto& sent : device.sent()) {
+    answers.hear(sent.time, connection_of(sent), sent.bytes);
+  }
   const auto is_same = [](const auto& one, const auto& other) {
     return one.time == other.time && one.bytes == other.bytes &&
            connection_of(one) == connection_of(other);
   };
   require(!copy || std::ranges::equal(device.sent(), copy->sent(), is_same),
           "a copy goes on to the same bytes");
-  return device;
+  return {std::move(device), pieces};
 }
 
 }  // namespace armjig::fuzz

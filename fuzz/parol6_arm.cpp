@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "fuzz/hosted.hpp"
+#include "fuzz/parol6_input.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
@@ -49,29 +50,14 @@ std::vector<std::byte> frame_from(Input& input) {
                               Command::kHome,  Command::kDisable, Command::kClearError,
                               Command::kEnable};
   CommandFrame frame;
-  const auto code = input.u8();
-  frame.command = code < 0xF0 ? kCodes[code % kCodes.size()] : Command{code};
-  const auto joints = input.u8();
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    if ((joints >> j & 1) == 0) continue;
-    frame.speed[j] = StepsPerSecond{input.i16()};
-    frame.position[j] = Steps{input.i16()};
-  }
+  const auto joints = draw_motion(input, kCodes, frame);
   frame.in_out = static_cast<std::uint8_t>(joints & io_flag::kOutputs);
   frame.gripper = set_point_from(input);
   const auto bytes = encode(frame);
   return {bytes.begin(), bytes.end()};
 }
 
-/// Frames that were said are counted, for no more may be answered.
-std::size_t said = 0;
-
-std::vector<std::byte> counted_frame_from(Input& input) {
-  ++said;
-  return frame_from(input);
-}
-
-constexpr Surroundings kAround{kHands, counted_frame_from, make_dissector};
+constexpr Surroundings kAround{kHands, frame_from, make_dissector};
 
 Arm arm_from(std::uint8_t choices) {
   ArmOptions options;
@@ -87,9 +73,8 @@ Arm arm_from(std::uint8_t choices) {
 }
 
 void check_session(Input input) {
-  said = 0;
-  const auto arm = check_hosted(arm_from(input.u8()), {}, input, 3s, kAround);
-  require(arm.sent().size() <= said, "no frame is answered twice");
+  const auto [arm, frames] = check_hosted(arm_from(input.u8()), {}, input, 3s, kAround);
+  require(arm.sent().size() <= frames, "no frame is answered twice");
   for (const auto& sent : arm.sent()) {
     require(sent.bytes.size() == kTelemetryFrameSize, "each answer is one frame");
   }

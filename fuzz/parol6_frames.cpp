@@ -17,6 +17,7 @@
 
 #include "emulators/parol6/board.hpp"
 #include "fuzz/input.hpp"
+#include "fuzz/parol6_input.hpp"
 #include "fuzz/require.hpp"
 
 namespace armjig::fuzz::parol6_frames {
@@ -37,14 +38,7 @@ CommandFrame frame_from(Input& input, const CommandFrame& before) {
                               Command::kDisable, Command::kClearError};
   if (input.is_empty()) return before;
   CommandFrame frame;
-  const auto code = input.u8();
-  frame.command = code < 0xF0 ? kCodes[code % kCodes.size()] : Command{code};
-  const auto joints = input.u8();
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    if ((joints >> j & 1) == 0) continue;
-    frame.speed[j] = StepsPerSecond{input.i16()};
-    frame.position[j] = Steps{input.i16()};
-  }
+  const auto joints = draw_motion(input, kCodes, frame);
   if ((joints & 0x40) != 0) frame.in_out = input.u8();
   return frame;
 }

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "emulators/replay/watched.hpp"
+#include "fuzz/answers.hpp"
 #include "fuzz/require.hpp"
-#include "harness/wire/dissector.hpp"
 #include "tests/unit/emulators/sessions/drawn_session.hpp"
 
 // NOLINTNEXTLINE(bugprone-reserved-identifier): the name that sanitizers give it
@@ -27,23 +27,6 @@ inline std::size_t allocated() {
   return __sanitizer_get_current_allocated_bytes != nullptr
              ? __sanitizer_get_current_allocated_bytes()
              : mallinfo2().uordblks;
-}
-
-/// What the emulator says is made of whole messages, in the order of time. On a bus any bytes are
-/// an answer.
-inline void require_well_formed(const std::vector<TraceEvent>& answers, Dissector& dissector) {
-  std::vector<Message> messages;
-  Instant last{};
-  for (const auto& event : answers) {
-    if (event.dir != "from_device") continue;
-    require(event.time >= last, "times never decrease");
-    last = event.time;
-    dissector.feed(Direction::kFromDevice, event.time, event.bytes, messages);
-  }
-  for (const auto& message : messages) {
-    if (!message.fault.empty()) std::cerr << to_text(message) << '\n';
-    require(message.fault.empty(), "every answer is a message");
-  }
 }
 
 /// Sessions that end by then are compared with the plain model, which takes its time.
@@ -91,7 +74,10 @@ void check_session(const test::DrawnDevice& device, std::span<const std::uint8_t
                          ? replay.run_plainly(*session)
                          : Promises::replay_watched(*session, watch_with(promises));
   require(fast && other, "a session can be played");
-  require_well_formed(fast->actual, *recorded.make_dissector());
+  Answers answers{recorded.make_dissector};
+  for (const auto& event : fast->actual) {
+    if (event.dir == "from_device") answers.hear(event.time, event.id, event.bytes);
+  }
   promises.hear(fast->actual);
   const auto difference = first_difference(other->actual, fast->actual);
   if (difference) std::cerr << describe(*difference, *session, recorded.make_dissector) << '\n';

@@ -18,7 +18,6 @@ MOST_SECONDS = 60
 MOST_SURPLUS = 3
 
 
-
 def run(*arguments):
     return subprocess.run([ARMJIG, *arguments], capture_output=True, text=True, check=False)
 

@@ -67,54 +67,62 @@ Answer hold_home(BoardBench& board) {
   return board.keep_asking(with_code(kHome), 100ms);
 }
 
-/// The same stages as the first time, to the same places, and each joint at its switch again.
-void expect_second_run(BoardBench& board) {
-  const auto first = board.homing_log().back();
+/// Homes an arm that was homed, while `look` asks until the answer is that of an arm that is. All
+/// answers.
+template <class Look>
+std::vector<Answer> home_again(BoardBench& board, Look look) {
   std::vector<Answer> log{board.ask(idle())};
   board.act(with_code(kHome));
-  const auto is_over = [&](const Answer& answer) {
+  look([&](const Answer& answer) {
     log.push_back(answer);
     return is_homed(answer);
-  };
-  board.about("homing a homed arm");
-  if (!board.ask_until(idle(), is_over, 90s)) return board.fail("all joints homed", "not in 90 s");
-  const HomingRecord run{log};
-  const std::vector wanted{kNoneHomed, kFirstThreeHomed, kFirstFourHomed, kAllHomed};
-  board.expect_true(run.bits() == wanted, "homed = 03 E3 F3 FF, one after the other", "others");
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto bits = j < 3 ? kNoneHomed : j == 3 ? kFirstThreeHomed : kFirstFourHomed;
-    for (const auto speed : {kHoming[j].back_off, kHoming[j].slow_seek}) {
-      board.expect_true(run.with_speed(bits, j, speed).size() > 2,
-                        fmt::format("{} = {} for a while", speed_field(j), speed), "never");
-    }
-    board.expect_same(log.back(), position_field(j), first);
-  }
+  });
+  return log;
 }
 
-/// Pauses leave out nothing and add nothing, whatever is under way.
-void expect_paused_run(BoardBench& board) {
-  const auto first = board.homing_log().back();
-  std::vector<Answer> log{board.ask(idle())};
-  board.act(with_code(kHome));
-  const auto is_over = [&](const Answer& answer) {
-    log.push_back(answer);
-    return is_homed(answer);
-  };
-  const auto end = board.now() + 120s;
-  while (!board.is_over() && !board.error() && board.now() < end) {
-    if (board.ask_until(idle(), is_over, 300ms)) break;
-    board.act(with_code(42));
-    board.about("code 42 in a run of homing");
-    expect_still(board, with_code(42), 20ms);
-    board.act(idle());
-  }
-  board.about("a run of homing with pauses");
+/// One joint after the other, to the same places as the first time.
+void expect_as_first(BoardBench& board, const Answer& first, const std::vector<Answer>& log) {
   const std::vector wanted{kNoneHomed, kFirstThreeHomed, kFirstFourHomed, kAllHomed};
   board.expect_true(HomingRecord{log}.bits() == wanted, "homed = 03 E3 F3 FF, one after the other",
                     "others");
   for (std::size_t j = 0; j < kJointCount; ++j) {
     board.expect_same(log.back(), position_field(j), first);
   }
+}
+
+/// The same stages as the first time, to the same places, and each joint at its switch again.
+void expect_second_run(BoardBench& board) {
+  const auto first = board.homing_log().back();
+  const auto log = home_again(board, [&](auto is_over) {
+    board.about("homing a homed arm");
+    if (!board.ask_until(idle(), is_over, 90s)) board.fail("all joints homed", "not in 90 s");
+  });
+  expect_as_first(board, first, log);
+  const HomingRecord run{log};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto bits = j < 3 ? kNoneHomed : j == 3 ? kFirstThreeHomed : kFirstFourHomed;
+    for (const auto speed : {kHoming[j].back_off, kHoming[j].slow_seek}) {
+      board.expect_true(run.with_speed(bits, j, speed).size() > 2,
+                        fmt::format("{} = {} for a while", speed_field(j), speed), "never");
+    }
+  }
+}
+
+/// Pauses leave out nothing and add nothing, whatever is under way.
+void expect_paused_run(BoardBench& board) {
+  const auto first = board.homing_log().back();
+  const auto end = board.now() + 120s;
+  const auto log = home_again(board, [&](auto is_over) {
+    while (!board.is_over() && !board.error() && board.now() < end) {
+      if (board.ask_until(idle(), is_over, 300ms)) break;
+      board.act(with_code(42));
+      board.about("code 42 in a run of homing");
+      expect_still(board, with_code(42), 20ms);
+      board.act(idle());
+    }
+  });
+  board.about("a run of homing with pauses");
+  expect_as_first(board, first, log);
 }
 
 constexpr Clause kHomeClauses[] = {
