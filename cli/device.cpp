@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "cli/beside.hpp"
 #include "harness/core/nearest.hpp"
 
 namespace armjig::cli {
@@ -126,9 +127,13 @@ Outcome<std::unique_ptr<Follower>> open_follower(const Device& device, const Rig
 }
 
 Outcome<std::unique_ptr<Bench>> open_bench(const Device& device, const RigOptions& how) {
-  return with_rig(device, how, [&how](const auto& kind, auto rig) {
+  auto bench = with_rig(device, how, [&how](const auto& kind, auto rig) {
     return kind.make_bench(std::move(rig), how);
   });
+  if (bench && how.target.is_emulated() && !how.impairment) {
+    (*bench)->know_sessions(sessions_beside(device, how.target, device));
+  }
+  return bench;
 }
 
 }  // namespace armjig::cli

@@ -288,7 +288,8 @@ struct ProbedLink {
 [[nodiscard]] Outcome<std::unique_ptr<Follower>> open_follower(const Device& device,
                                                                const RigOptions& how);
 
-/// The conversation of the device's suite with a target.
+/// The conversation of the device's suite with a target. Where that is emulated, sessions are
+/// played to it beside an emulated device of its own.
 [[nodiscard]] Outcome<std::unique_ptr<Bench>> open_bench(const Device& device,
                                                          const RigOptions& how);
 

@@ -76,15 +76,10 @@ struct FuzzOptions {
   std::string colour;
 };
 
-/// Virtual time is for nothing, that of a live device is not.
-constexpr Duration kLongestEmulated = std::chrono::seconds{60};
 constexpr Duration kLongestLive = std::chrono::seconds{6};
 constexpr auto kShrinkingEmulated = std::chrono::seconds{30};
 constexpr auto kShrinkingLive = std::chrono::seconds{60};
 constexpr std::size_t kCasesBetweenResetsLive = 8;
-/// For what is said after the last record.
-constexpr Duration kHorizon = std::chrono::milliseconds{20};
-
 /// All that a run is told, read.
 struct FuzzRun {
   const Device& device;
@@ -104,22 +99,16 @@ bool has_profile(const Device& device) {
 Outcome<Target> model_of(const Device& device, const FuzzOptions& options, const Target& target,
                          const Known& known) {
   if (!options.model.empty()) return parse_target(options.model);
-  auto model = Target{"emulated:", "emulated", "", target.options};
-  if (!target.is_emulated()) model.options.clear();
-  model.options.erase("fault");
+  auto with = target.is_emulated() ? target.options : DeviceOptions{};
   const auto said = known.model.empty() && has_profile(device) && options.known.empty()
                         ? std::string{"profile=documented"}
                         : known.model;
   if (!said.empty()) {
     const auto parsed = parse_target("emulated:?" + said);
     if (!parsed) return parsed;
-    for (const auto& [name, value] : parsed->options) model.options[name] = value;
+    for (const auto& [name, value] : parsed->options) with[name] = value;
   }
-  const char* mark = "?";
-  for (const auto& [name, value] : model.options) {
-    model.text += fmt::format("{}{}={}", std::exchange(mark, "&"), name, value);
-  }
-  return model;
+  return sound_target(std::move(with));
 }
 
 Outcome<Share> share_of(const std::string& text) {
@@ -268,7 +257,8 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   auto material = material_of(run.device, how, run.model, length);
   if (!material) return report(material.error());
   const auto hand = hand_of(run.options.hands);
-  auto stage = stage_of(run.device, how, run.model, hand, kHorizon + 2 * rules->time_tolerance);
+  auto stage =
+      stage_of(run.device, how, run.device, run.model, hand, kHorizon + 2 * rules->time_tolerance);
   const auto options = campaign_options(run, state, *std::move(rules), must_stop);
   Account account{folder, causes_of(state.findings).size()};
   const auto done = run_campaign(*stage, *material, options, state, account.listener());

@@ -194,13 +194,24 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
 }
 
 std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions& how,
-                                          const RigOptions& model, const Hand& hand,
-                                          Duration trailing) {
+                                          const Device& reference, const RigOptions& model,
+                                          const Hand& hand, Duration trailing) {
   return stage_with(device, how, hand, trailing, [&](const auto& kind, auto& setup) {
-    setup.make_model = [&device, &kind, model] {
-      return open_fresh(wiring_of(device, kind), model);
+    setup.make_model = [&reference, model] {
+      using Kind = std::remove_cvref_t<decltype(kind)>;
+      return open_rig<Kind>(reference, model);
     };
   });
+}
+
+Target sound_target(DeviceOptions options) {
+  Target sound{"emulated:", "emulated", "", std::move(options)};
+  sound.options.erase("fault");
+  const char* mark = "?";
+  for (const auto& [name, value] : sound.options) {
+    sound.text += fmt::format("{}{}={}", std::exchange(mark, "&"), name, value);
+  }
+  return sound;
 }
 
 std::unique_ptr<campaign::Stage> stage_alone(const Device& device, const RigOptions& how,

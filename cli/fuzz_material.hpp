@@ -18,8 +18,10 @@ namespace armjig::cli {
 [[nodiscard]] Outcome<campaign::Material> material_of(const Device& device, const RigOptions& how,
                                                       const RigOptions& model, Duration longest);
 
-/// Target and model. What comes later than a case by `trailing` is not heard any more.
+/// The target and a model of it, which is an emulated `reference`: the device itself, or the same
+/// with an emulator of its own. What comes later than a case by `trailing` is not heard any more.
 [[nodiscard]] std::unique_ptr<campaign::Stage> stage_of(const Device& device, const RigOptions& how,
+                                                        const Device& reference,
                                                         const RigOptions& model, const Hand& hand,
                                                         Duration trailing);
 
@@ -28,6 +30,15 @@ namespace armjig::cli {
 [[nodiscard]] std::unique_ptr<campaign::Stage> stage_alone(const Device& device,
                                                            const RigOptions& how, const Hand& hand,
                                                            double speed);
+
+/// The emulated target with those options, but without a fault.
+[[nodiscard]] Target sound_target(DeviceOptions options);
+
+/// Virtual time is for nothing: so long a case may be that is played to an emulated target.
+inline constexpr Duration kLongestEmulated = std::chrono::seconds{60};
+
+/// What is said after the last record of a case is waited for so long.
+inline constexpr Duration kHorizon = std::chrono::milliseconds{20};
 
 /// `OnStream`, `OnServer` or `OnBus`.
 [[nodiscard]] std::string port_name_of(const Device& device);

@@ -69,6 +69,15 @@ void Bench::expect_in_time(const InBounds& measured, std::string_view wanted,
   decide(std::move(judgement));
 }
 
+void Bench::expect_as_reference(std::uint64_t sessions) {
+  if (is_over_) return;
+  if (!play_sessions_) return skip("needs a reference beside the device, in virtual time");
+  const auto seed = std::uint64_t{random()} << 32U | random();
+  const auto parted = play_sessions_(seed, sessions);
+  if (!parted) return blame_rig(describe(parted.error()));
+  if (*parted) fail(behind("what the reference beside it does"), **parted);
+}
+
 std::string Bench::behind(std::string_view text) const {
   return about_.empty() ? std::string{text} : fmt::format("{} ({})", text, about_);
 }

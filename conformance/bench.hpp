@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <random>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -51,6 +52,11 @@ struct Hand {
       [](std::string_view /*input*/, std::int64_t /*value*/) { return false; };
 };
 
+/// Plays so many sessions, drawn from a seed, to the device and to a reference beside it. In what
+/// they differ first, as a sentence; none: in nothing. Problems: those of opening either.
+using PlaySessions =
+    std::function<Outcome<std::optional<std::string>>(std::uint64_t seed, std::uint64_t count)>;
+
 /// What a case works on: a conversation with one device, on whatever link that has. Each suite has
 /// its own kind, with the vocabulary of its protocol; this is what the engine needs of all.
 ///
@@ -80,6 +86,9 @@ class Bench {
   [[nodiscard]] Duration link_noise() const noexcept;
   /// So late come answers of an emulated device on a link of the same kind; none: nobody knows.
   void know_link(std::optional<Duration> noise) noexcept { link_ = noise; }
+
+  /// How sessions are played beside a reference; nobody can, unless this is called.
+  void know_sessions(PlaySessions play) { play_sessions_ = std::move(play); }
 
   /// For what neither link nor emulated device offers.
   void set_hand(Hand hand) { hand_ = std::move(hand); }
@@ -121,6 +130,9 @@ class Bench {
   /// The same of a moment or a pace: tried again before it counts, where time is real.
   void expect_in_time(const InBounds& measured, std::string_view wanted,
                       std::string_view otherwise);
+  /// In so many sessions drawn at random it does what a reference beside it does. Skips the case
+  /// where there is none.
+  void expect_as_reference(std::uint64_t sessions);
 
  protected:
   virtual void forget_exchange() = 0;
@@ -146,6 +158,7 @@ class Bench {
   Duration heard_{};
   std::optional<Duration> link_;
   Hand hand_;
+  PlaySessions play_sessions_;
   bool is_over_ = false;
   double room_{};  ///< from the margin to its bound, as a share of the way between the bounds
   std::mt19937 random_;

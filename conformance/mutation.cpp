@@ -117,12 +117,19 @@ class Mutation {
   }
 
  private:
+  /// Those that were written for something.
+  [[nodiscard]] Cases cases_of(Profile profile) const {
+    auto cases = select(suite_, profile, {});
+    std::erase_if(cases, [](const Case* one) { return one->is_search; });
+    return cases;
+  }
+
   /// Only what passes on a sound device can show a fault.
   Outcome<void> try_sound() {
     auto trial = open({}, options_.profile);
     if (!trial) return tl::unexpected{trial.error()};
     (void)trial->begin();
-    for (const auto* one : select(suite_, options_.profile, {})) {
+    for (const auto* one : cases_of(options_.profile)) {
       if (options_.must_stop()) break;
       if (trial->finding(*one)) {
         result_.broken_on_sound.push_back(name_of(*one));
@@ -206,7 +213,7 @@ class Mutation {
   /// A fault may break only what shipped devices do and this profile leaves open. One that breaks
   /// something that both demand, and yet was not found, remains a survivor.
   void excuse_survivors() {
-    const auto shipped_cases = select(suite_, kShipped, {});
+    const auto shipped_cases = cases_of(kShipped);
     std::set<std::string_view> demanded;
     for (const auto* one : cases_) demanded.insert(one->requirement);
     in_parallel(options_.threads, result_.fates.size(), [&](std::size_t i) {

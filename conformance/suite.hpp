@@ -24,6 +24,8 @@ struct Case {
   Hazard hazard = Hazard::kObserve;  ///< the worst that it does to a device
   Tier tier = Tier::kQuick;
   std::uint8_t start = 0;  ///< the state that it needs, an index into the suite's
+  /// It looks for whatever nobody thought of, so it says nothing of how good the other cases are.
+  bool is_search = false;
 };
 
 /// A case that starts in the first state and does no more than to look. Without a rule, that of its

@@ -8,6 +8,7 @@
 #include "conformance/kinovazed/chapters.hpp"
 #include "conformance/kinovazed/host/check.hpp"
 #include "conformance/kinovazed/server_bench.hpp"
+#include "conformance/sessions.hpp"
 
 namespace armjig::kinovazed::conformance {
 namespace {
@@ -60,6 +61,7 @@ Suite suite() noexcept {
       arm_chapter(),
       robust_chapter(),
       death_chapter(),
+      sessions_chapter("kinovazed.sessions.as-reference", "server, as the emulator has it"),
       chapter("Client programs", programs::host_requirements()),
   };
   return {"kinovazed", "0.3", kChapters, kStarts, shipped_document("docs/spec/kinovazed.md"),

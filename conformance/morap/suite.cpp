@@ -6,6 +6,7 @@
 
 #include "conformance/morap/chapters.hpp"
 #include "conformance/morap/host/check.hpp"
+#include "conformance/sessions.hpp"
 
 namespace armjig::morap::conformance {
 namespace {
@@ -42,10 +43,19 @@ constexpr auto kVital = std::to_array<std::string_view>({".voltage.disabled", ".
 
 Suite suite() noexcept {
   static const std::array kChapters{
-      bus_chapter(),        reading_chapter(), status_chapter(),
-      reference_chapter(),  output_chapter(),  program_chapter(),
-      tune_chapter(),       loop_chapter(),    motion_chapter(),
-      documented_chapter(), pen_chapter(),     chapter("Masters", programs::host_requirements()),
+      bus_chapter(),
+      reading_chapter(),
+      status_chapter(),
+      reference_chapter(),
+      output_chapter(),
+      program_chapter(),
+      tune_chapter(),
+      loop_chapter(),
+      motion_chapter(),
+      documented_chapter(),
+      pen_chapter(),
+      sessions_chapter("morap.sessions.as-reference", "firmware, as the emulator has it"),
+      chapter("Masters", programs::host_requirements()),
   };
   return {"morap",   "0.3", kChapters, kStarts, shipped_document("docs/spec/morap.md"),
           kSubjects, kVital};

@@ -8,6 +8,7 @@
 #include "conformance/parol6/board_bench.hpp"
 #include "conformance/parol6/chapters.hpp"
 #include "conformance/parol6/host/check.hpp"
+#include "conformance/sessions.hpp"
 
 namespace armjig::parol6::conformance {
 namespace {
@@ -50,10 +51,19 @@ constexpr auto kVital = std::to_array<std::string_view>(
 Suite suite() noexcept {
   // A whole run of homing leaves the arm at places from which interrupted ones show less.
   static const std::array kChapters{
-      frame_chapter(), receive_chapter(), telemetry_chapter(),
-      io_chapter(),    command_chapter(), jog_chapter(),
-      go_to_chapter(), home_chapter(),    home_run_chapter(),
-      demo_chapter(),  gripper_chapter(), chapter("Host programs", programs::host_requirements()),
+      frame_chapter(),
+      receive_chapter(),
+      telemetry_chapter(),
+      io_chapter(),
+      command_chapter(),
+      jog_chapter(),
+      go_to_chapter(),
+      home_chapter(),
+      home_run_chapter(),
+      demo_chapter(),
+      gripper_chapter(),
+      sessions_chapter("parol6.sessions.as-reference", "firmware, as the emulator has it"),
+      chapter("Host programs", programs::host_requirements()),
   };
   return {"parol6",  "0.3", kChapters, kStarts, shipped_document("docs/spec/parol6.md"),
           kSubjects, kVital};

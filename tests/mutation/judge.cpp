@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/beside.hpp"
 #include "cli/device.hpp"
 #include "cli/devices/devices.hpp"
 #include "cli/program.hpp"
@@ -78,11 +79,14 @@ Outcome<std::string> told_apart_by(const cli::Device& device,
 }
 
 /// What the suite says: the first case that fails, or how many passed.
-Outcome<std::string> judgement(const cli::Device& device, std::string_view text, Tier tier) {
-  auto target = parse_target(text);
+/// `own` has the emulator of this program.
+Outcome<std::string> judgement(const cli::Device& device, const cli::Device& own,
+                               std::string_view text, Tier tier) {
+  const auto target = parse_target(text);
   if (!target) return tl::unexpected{target.error()};
-  const auto bench = cli::open_bench(device, {.target = *std::move(target)});
+  const auto bench = cli::open_bench(device, {.target = *target});
   if (!bench) return "killed: the start, " + describe(bench.error());
+  (*bench)->know_sessions(cli::sessions_beside(device, *target, own));
   RunOptions run;
   run.selection.tier = tier;
   run.stops_at_first_failure = true;
@@ -97,14 +101,14 @@ Outcome<std::string> judgement(const cli::Device& device, std::string_view text,
                      std::ranges::count(report.rows, Verdict::kPass, &ReportRow::verdict));
 }
 
-Outcome<void> judge(const cli::Device& device, const std::string& target, std::optional<Tier> tier,
-                    const std::vector<std::string>& folders) {
+Outcome<void> judge(const cli::Device& device, const cli::Device& own, const std::string& target,
+                    std::optional<Tier> tier, const std::vector<std::string>& folders) {
   const auto where = told_apart_by(device, folders);
   if (!where) return tl::unexpected{where.error()};
   fmt::print("{}\n", where->empty() ? "same" : "differs: " + *where);
   std::fflush(stdout);
   if (!tier || (where->empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr)) return {};
-  return judgement(device, target, *tier).map([](const std::string& found) {
+  return judgement(device, own, target, *tier).map([](const std::string& found) {
     fmt::print("{}\n", found);
   });
 }
@@ -142,7 +146,7 @@ int run(std::span<char*> arguments) {
   const auto tier = find_tier(arguments[5]);
   if (!tier) return kWrongUsage;
   const auto folders = arguments.subspan(6);
-  const auto done = judge(device, arguments[4], *tier, {folders.begin(), folders.end()});
+  const auto done = judge(device, **found, arguments[4], *tier, {folders.begin(), folders.end()});
   if (done) return 0;
   fmt::print(stderr, "{}\n", describe(done.error()));
   return kWrongUsage;

@@ -38,7 +38,7 @@ CampaignState run(const Asked& asked) {
   const auto target = emulated(asked.fault.empty() ? "" : "?fault=" + asked.fault);
   const auto model = emulated("");
   const auto material = cli::material_of(device, target, model, 20s).value();
-  const auto stage = cli::stage_of(device, target, model, Hand{}, 20ms);
+  const auto stage = cli::stage_of(device, target, device, model, Hand{}, 20ms);
   CampaignState state;
   const CampaignOptions options{.seed = asked.seed,
                                 .most_cases = asked.cases,
@@ -159,7 +159,8 @@ TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
   for (const bool can_reset : {true, false}) {
     const auto faulty = emulated("?fault=quirk:steps-lost");
     auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
-    RefusingStage stage{cli::stage_of(device, faulty, emulated(""), Hand{}, 20ms), can_reset};
+    RefusingStage stage{cli::stage_of(device, faulty, device, emulated(""), Hand{}, 20ms),
+                        can_reset};
     CampaignState state;
     const CampaignOptions options{.most_cases = 30, .judging = {device.make_dissector, {}, 20ms}};
     const auto done = run_campaign(stage, material, options, state, {});
@@ -231,7 +232,7 @@ class SilentStage final : public Stage {
 CampaignState state_after_change(std::unique_ptr<Stage> (*make_changed)(const cli::Device&)) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
   auto material = cli::material_of(device, emulated(""), emulated(""), 1s).value();
-  ChangingStage stage{cli::stage_of(device, emulated(""), emulated(""), Hand{}, 20ms),
+  ChangingStage stage{cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms),
                       make_changed(device)};
   CampaignState state;
   const CampaignOptions options{
@@ -242,8 +243,8 @@ CampaignState state_after_change(std::unique_ptr<Stage> (*make_changed)(const cl
 
 TEST(Campaign, SaysNothingOfWhatStaysDifferentOnADeviceThatNobodyCanStartAgain) {
   const auto state = state_after_change([](const cli::Device& device) {
-    return cli::stage_of(device, emulated("?fault=zero:gripper.object"), emulated(""), Hand{},
-                         20ms);
+    return cli::stage_of(device, emulated("?fault=zero:gripper.object"), device, emulated(""),
+                         Hand{}, 20ms);
   });
   EXPECT_TRUE(state.findings.empty());
   ASSERT_EQ(state.passed_over.size(), 1U);
@@ -254,7 +255,7 @@ TEST(Campaign, SaysNothingOfWhatStaysDifferentOnADeviceThatNobodyCanStartAgain) 
 TEST(Campaign, TellsOfADeviceThatIsSilentForGood) {
   const auto state = state_after_change([](const cli::Device& device) -> std::unique_ptr<Stage> {
     return std::make_unique<SilentStage>(
-        cli::stage_of(device, emulated(""), emulated(""), Hand{}, 20ms));
+        cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms));
   });
   EXPECT_FALSE(state.findings.empty());
   EXPECT_TRUE(state.passed_over.empty());
