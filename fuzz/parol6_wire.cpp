@@ -12,6 +12,7 @@
 #include <span>
 
 #include "fuzz/require.hpp"
+#include "harness/wire/parol6/fields.hpp"
 #include "harness/wire/parol6/frame.hpp"
 #include "harness/wire/parol6/readings.hpp"
 
@@ -51,6 +52,7 @@ void check_command(const CommandFrame& frame) {
   const bool is_homing_or_demo = frame.command == Command::kHome || frame.command == Command::kDemo;
   require(!moves(frame.command) || ends_homing(frame.command) != is_homing_or_demo,
           "what moves joints ends a homing, or is one");
+  require(!name_of(frame.command).empty(), "a code has a name, or a number");
 }
 
 void check_frames(Bytes data) {

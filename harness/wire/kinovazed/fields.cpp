@@ -8,7 +8,7 @@ namespace armjig::kinovazed {
 namespace {
 
 template <std::size_t size>
-constexpr std::array<NamedValue, size> numbered(const std::array<std::string_view, size>& names) {
+consteval std::array<NamedValue, size> numbered(const std::array<std::string_view, size>& names) {
   std::array<NamedValue, size> values{};
   for (std::size_t i = 0; i < size; ++i) values[i] = {static_cast<std::int64_t>(i), names[i]};
   return values;
@@ -23,11 +23,11 @@ constexpr std::array<std::string_view, 8> kBeatBits{
     "isRetracted", "isInJoystickMode", "isRunningObjective", "isIdle",
     "isFreezed",   "isInitialized",    "hasEmergencyStop",   "isConnected"};
 
-constexpr Field word(std::string_view name, std::uint16_t piece, std::string_view meaning,
+consteval Field word(std::string_view name, std::uint16_t piece, std::string_view meaning,
                      std::span<const NamedValue> values) {
   return {name, piece, 0, Encoding::kCode, "", meaning, {}, values, 0, Place::kPiece};
 }
-constexpr Field deflection(std::string_view name, std::uint16_t piece, std::string_view meaning) {
+consteval Field deflection(std::string_view name, std::uint16_t piece, std::string_view meaning) {
   return {name, piece, 0, Encoding::kSigned, "", meaning, {}, {}, 0, Place::kPiece};
 }
 

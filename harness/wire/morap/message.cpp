@@ -36,7 +36,7 @@ constexpr std::array kCommands{
 };
 
 /// Called as it is chosen, without the word in front.
-constexpr ReadInfo reading(CommandId selector, std::string_view name, ReadKind kind,
+consteval ReadInfo reading(CommandId selector, std::string_view name, ReadKind kind,
                            std::string_view unit, std::string_view meaning,
                            bool is_documented = true) {
   return {selector, name, name.substr(name.find('_') + 1), kind, unit, meaning, is_documented};
@@ -61,7 +61,7 @@ constexpr std::uint8_t kNowhere = 0xFF;
 
 /// Where in a table the row of each identifier is.
 template <class Table>
-constexpr auto places_in(const Table& table, auto key) {
+consteval auto places_in(const Table& table, auto key) {
   std::array<std::uint8_t, 256> places{};
   places.fill(kNowhere);
   for (std::uint8_t i = 0; i < table.size(); ++i) {

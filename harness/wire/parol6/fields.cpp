@@ -20,7 +20,7 @@ constexpr BitNames kGripperCommandBits{"activate", "go_to", "estop", "release_di
 constexpr BitNames kGripperStatusBits{"activated",  "go_to",         "object_bit0", "object_bit1",
                                       "temp_error", "timeout_error", "estop_error", "calibrated"};
 
-constexpr NamedValue named(Command command, std::string_view name) noexcept {
+consteval NamedValue named(Command command, std::string_view name) noexcept {
   return {static_cast<std::int64_t>(command), name};
 }
 constexpr std::array kCommands{named(Command::kDemo, "demo"),
@@ -35,7 +35,7 @@ constexpr std::array kGripperModes{NamedValue{gripper_mode::kMove, "move"},
                                    NamedValue{gripper_mode::kCalibrate, "calibrate"},
                                    NamedValue{gripper_mode::kClearError, "clear_error"}};
 
-constexpr Field literal(std::string_view name, std::uint16_t offset, std::uint8_t width,
+consteval Field literal(std::string_view name, std::uint16_t offset, std::uint8_t width,
                         std::int64_t value) noexcept {
   return {name, offset, width, kLiteral, "", "the same in every frame", {}, {}, value};
 }
