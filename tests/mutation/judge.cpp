@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs with an emulator that comes in a shared object (tests/mutation/judged.hpp).
 //
-//   mutation_judge judge DEVICE OBJECT TARGET quick|full|none FOLDER...
+//   mutation_judge judge DEVICE OBJECT TARGET quick|full FOLDER...
 //
 // tells whether a recording in those folders tells it from the emulator of this program, and
 // whether the suite of its device finds it out, in that tier. Prints a line "differs: RECORDING" or
 // "same", then "killed: CASE" or "survived: N cases passed". The second is left out where the first
-// says "same", unless ARMJIG_JUDGE_ALL is set, and without a tier.
+// says "same", unless ARMJIG_JUDGE_ALL is set.
+//
+//   mutation_judge wire DEVICE OBJECT TARGET SESSIONS
+//
+// tells whether so many sessions that consist of nothing but bytes on a link, in virtual time, tell it
+// from the emulator of this program. Prints what they differ in, or "same".
 //
 //   mutation_judge serve DEVICE OBJECT ARGUMENT...
 //
@@ -80,13 +85,11 @@ Outcome<std::string> told_apart_by(const cli::Device& device,
 
 /// What the suite says: the first case that fails, or how many passed.
 /// `own` has the emulator of this program.
-Outcome<std::string> judgement(const cli::Device& device, const cli::Device& own,
-                               std::string_view text, Tier tier) {
-  const auto target = parse_target(text);
-  if (!target) return tl::unexpected{target.error()};
-  const auto bench = cli::open_bench(device, {.target = *target});
+std::string judgement(const cli::Device& device, const cli::Device& own, const Target& target,
+                      Tier tier) {
+  const auto bench = cli::open_bench(device, {.target = target});
   if (!bench) return "killed: the start, " + describe(bench.error());
-  (*bench)->know_sessions(cli::sessions_beside(device, *target, own));
+  (*bench)->know_sessions(cli::sessions_beside(device, target, own));
   RunOptions run;
   run.selection.tier = tier;
   run.stops_at_first_failure = true;
@@ -101,24 +104,23 @@ Outcome<std::string> judgement(const cli::Device& device, const cli::Device& own
                      std::ranges::count(report.rows, Verdict::kPass, &ReportRow::verdict));
 }
 
-Outcome<void> judge(const cli::Device& device, const cli::Device& own, const std::string& target,
-                    std::optional<Tier> tier, const std::vector<std::string>& folders) {
+Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Target& target,
+                    Tier tier, const std::vector<std::string>& folders) {
   const auto where = told_apart_by(device, folders);
   if (!where) return tl::unexpected{where.error()};
   fmt::print("{}\n", where->empty() ? "same" : "differs: " + *where);
   std::fflush(stdout);
-  if (!tier || (where->empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr)) return {};
-  return judgement(device, own, target, *tier).map([](const std::string& found) {
-    fmt::print("{}\n", found);
-  });
+  if (where->empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr) return {};
+  fmt::print("{}\n", judgement(device, own, target, tier));
+  return {};
 }
 
-/// Of those that it may have, one is none.
-std::optional<std::optional<Tier>> find_tier(std::string_view word) {
-  if (word == "quick") return Tier::kQuick;
-  if (word == "full") return Tier::kFull;
-  if (word == "none") return std::optional<Tier>{};
-  return std::nullopt;
+/// What sessions on a link would show of it; one that cannot be opened shows that.
+void judge_on_wire(const cli::Device& device, const cli::Device& own, const Target& target,
+                   std::uint64_t count) {
+  constexpr std::uint64_t kSeed = 1;
+  const auto difference = cli::sessions_beside(device, target, own)(kSeed, count);
+  fmt::print("{}\n", difference ? difference->value_or("same") : describe(difference.error()));
 }
 
 int serve(const cli::Device& device, char* program, std::span<char*> arguments) {
@@ -143,10 +145,15 @@ int run(std::span<char*> arguments) {
     return serve(device, arguments[0], arguments.subspan(4));
   }
   if (arguments.size() < 6) return kWrongUsage;
-  const auto tier = find_tier(arguments[5]);
-  if (!tier) return kWrongUsage;
+  const auto target = parse_target(arguments[4]);
+  if (!target) return kWrongUsage;
+  if (std::string_view{arguments[1]} == "wire") {
+    judge_on_wire(device, **found, *target, std::strtoull(arguments[5], nullptr, 10));
+    return 0;
+  }
+  const auto tier = std::string_view{arguments[5]} == "quick" ? Tier::kQuick : Tier::kFull;
   const auto folders = arguments.subspan(6);
-  const auto done = judge(device, **found, arguments[4], *tier, {folders.begin(), folders.end()});
+  const auto done = judge(device, **found, *target, tier, {folders.begin(), folders.end()});
   if (done) return 0;
   fmt::print(stderr, "{}\n", describe(done.error()));
   return kWrongUsage;
