@@ -12,9 +12,6 @@ namespace {
 using campaign::CampaignOptions;
 using campaign::CampaignState;
 
-/// What is found is shown as short as it becomes by then. No clock has a part in it.
-constexpr std::size_t kMostAttempts = 500;
-
 /// In what both differ first; none: in nothing.
 std::optional<std::string> difference_in(const CampaignState& state) {
   if (!state.findings.empty()) return state.findings.front().sentence;
@@ -24,12 +21,13 @@ std::optional<std::string> difference_in(const CampaignState& state) {
 
 }  // namespace
 
-PlaySessions sessions_beside(const Device& device, const Target& target, const Device& reference) {
+PlaySessions sessions_beside(const Device& device, const Target& target, const Device& reference,
+                             std::size_t most_attempts) {
   RigOptions how;
   how.target = target;
   RigOptions model;
   model.target = sound_target(target.options);
-  return [&device, &reference, how, model](
+  return [&device, &reference, how, model, most_attempts](
              std::uint64_t seed, std::uint64_t count) -> Outcome<std::optional<std::string>> {
     const auto material = material_of(reference, how, model, kLongestEmulated);
     if (!material) return tl::unexpected{material.error()};
@@ -37,7 +35,7 @@ PlaySessions sessions_beside(const Device& device, const Target& target, const D
     const CampaignOptions options{.seed = seed,
                                   .most_cases = count,
                                   .judging = {device.make_dissector, {}, kHorizon},
-                                  .most_attempts = kMostAttempts,
+                                  .most_attempts = most_attempts,
                                   .most_shrinking = Duration::max(),
                                   .stops_at_first = true};
     CampaignState state;

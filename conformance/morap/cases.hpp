@@ -43,6 +43,25 @@ inline void expect_of_zero_rate(NodeBench& node, ProgrammingStatus wanted) {
   node.expect_programming(wanted);
 }
 
+/// Up to the tick at which a loop computes for the first time.
+inline void run_loop(NodeBench& node, const ControllerSet& set, float reference) {
+  const bool is_speed = set.kind == ControllerKind::kSpeed;
+  node.send(set);
+  node.send(kCalibrateZero);
+  node.tick();
+  node.send(is_speed ? kSpeed : kPosition, reference);
+  node.tick(set.rate_hz);
+}
+
+/// One that gives 16 levels, on a shaft that may turn, and the next tick is far.
+inline void run_slow_loop(NodeBench& node) {
+  run_loop(node, proportional(node.loop_rate(), 1.0F), 0.75F);
+  node.tick();
+}
+
+/// On any node, with voltages that do its shaft no harm.
+constexpr Case slowly(CaseBody run) { return from(kSlow, Hazard::kProgram, run); }
+
 constexpr Case programming(std::string_view rule, CaseBody run, Start start = kProgrammable) {
   return from(start, Hazard::kProgram, rule, run);
 }

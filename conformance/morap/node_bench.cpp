@@ -60,6 +60,7 @@ void NodeBench::send_bytes(std::string_view hex, End end) { send_bytes(bytes_of(
 void NodeBench::send_bytes(Bytes bytes, End end) {
   if (is_deaf()) return;
   const auto written = write(subject_.address, bytes, end);
+  keep_pace();
   if (error()) return;
   if (!written.is_addressed) {
     fail_by_silence(behind("the address to be acknowledged"), "it was not");
@@ -71,6 +72,7 @@ void NodeBench::send_bytes(Bytes bytes, End end) {
 
 std::vector<std::byte> NodeBench::read_on(std::size_t size) {
   auto bytes = BusBench::read(subject_.address, size);
+  keep_pace();
   if (!bytes && !is_deaf()) {
     fail_by_silence(behind("the address to be acknowledged for a read"), "it was not");
   }
@@ -154,14 +156,26 @@ void NodeBench::settle() { pause(12ms + noise()); }
 
 void NodeBench::tick(std::uint16_t rate_hz) {
   if (is_deaf()) return;
-  pause_until(next_tick_ + kMargin);
+  if (!is_slow_ && subject_.is_real) return skip("needs time to stand still at its ticks");
+  const auto before = tick_period(rate_hz_);
+  // When a node idles that nobody has switched on, its next tick comes within a period.
+  if (is_slow_ && rate_hz_ == kIdleRateHz) next_tick_ = now() + before;
   if (rate_hz != 0) rate_hz_ = rate_hz;
-  next_tick_ += tick_period(rate_hz_);
+  const auto period = tick_period(rate_hz_);
+  pause_until(next_tick_ + (is_slow_ ? std::max(before, period) / 2 : kMargin));
+  next_tick_ += period;
 }
 
 void NodeBench::wait_for_tick() {
   constexpr Duration kAddress = 100us;  // until a node is asked for its first byte
-  if (!is_deaf()) pause_until(next_tick_ - kAddress - kMargin);
+  if (!is_deaf() && !is_slow_) pause_until(next_tick_ - kAddress - kMargin);
+}
+
+/// What was said or read between two ticks of a slow loop has to be between them.
+void NodeBench::keep_pace() {
+  if (!is_slow_ || rate_hz_ == kIdleRateHz || now() < next_tick_ - tick_period(rate_hz_) / 6)
+    return;
+  leave_open(fmt::format("this machine was too slow to come between ticks of {} Hz", rate_hz_));
 }
 
 void NodeBench::expect_read_levels(int levels) {
@@ -234,15 +248,27 @@ void NodeBench::prepare(const Command& command) {
   if (!is_deaf()) std::ignore = write(subject_.address, encode(command));
 }
 
+/// Its mode ends with its next tick.
+void NodeBench::leave_slow_loop() {
+  if (!is_slow_ || rate_hz_ == kIdleRateHz) return;
+  prepare(kCalibrationUnknown);
+  pause(2 * tick_period(rate_hz_));
+  rate_hz_ = kIdleRateHz;
+}
+
 void NodeBench::bring_to(std::size_t start) {
+  leave_slow_loop();
+  is_slow_ = start == kSlow;
   if (start == kListening) return;
   if (start == kFresh) return power_up(0);
-  if (start == kFree) {
+  if (start == kFree || start == kSlow) {
     if (!subject_.is_real) power_up(1);
+    if (start == kSlow) keep_sets();
     prepare(kCalibrationUnknown);
     prepare(kDefaultControllers);
     settle();
     rest();
+    find_motor();
     return prepare(kCalibrateZero);
   }
   if (start == kProgrammable) keep_sets();
@@ -318,6 +344,7 @@ void NodeBench::keep_sets() {
 void NodeBench::put_sets_back() {
   if (error()) return;
   begin(profile(), 0);
+  leave_slow_loop();
   for (const auto& set : kept_sets_) {
     if (set.empty()) continue;
     std::vector<std::byte> message{static_cast<std::byte>(kProgram)};

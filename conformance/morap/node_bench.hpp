@@ -24,6 +24,7 @@ enum Start : std::uint8_t {
   kProgrammable,  ///< likewise, with the stored controllers; what was in use is put back at the end
   kFresh,         ///< just switched on, the shaft held, all its ticks still to come
   kFree,          ///< just switched on, the shaft free to turn, calibrated at 0
+  kSlow,          ///< likewise, and loops that run have ticks of `kSlowRateHz`
 };
 
 /// A conversation with a motor node, in the words of its protocol.
@@ -38,6 +39,8 @@ class NodeBench final : public BusBench {
 
   /// So long a node may hold the clock (morap.bus.clock-before-read).
   static constexpr Duration kLongestHold = std::chrono::milliseconds{5};
+  /// Of loops whose ticks are told apart by a clock of this machine (morap.tick.slow-rate).
+  static constexpr std::uint16_t kSlowRateHz = 5;
   NodeBench(const NodeBench&) = delete;
   NodeBench& operator=(const NodeBench&) = delete;
   ~NodeBench() override;
@@ -78,12 +81,18 @@ class NodeBench final : public BusBench {
   // Time.
   /// Long enough for what waits for a tick of any rate from 200 Hz on.
   void settle();
-  /// Waits until just behind the next tick of a fresh node; from there on the node has `rate_hz`.
+  /// Waits until behind the next tick; from there on the node has `rate_hz`. Of a fresh node it is
+  /// known when that is. From `kSlow` on it is not, but ticks of loops are so far apart that the
+  /// middle between two of them is; who misses it leaves the case open.
   void tick(std::uint16_t rate_hz = 0);
+  /// Of loops: that of idling on a fresh node.
+  [[nodiscard]] std::uint16_t loop_rate() const noexcept {
+    return is_slow_ ? kSlowRateHz : kIdleRateHz;
+  }
   void ticks(int count) {
     for (int i = 0; i < count; ++i) tick();
   }
-  /// Waits until a read just now would still be before the next tick.
+  /// Waits until a read just now would still be before the next tick, as late as that is known.
   void wait_for_tick();
   /// The voltage that was chosen to be read.
   void expect_read_levels(int levels);
@@ -125,14 +134,17 @@ class NodeBench final : public BusBench {
   [[nodiscard]] Coasting watch_rest();
   void brake();
   void power_up(std::int64_t shaft);
+  void leave_slow_loop();
+  void keep_pace();
 
   Subject subject_;
   bool is_found_ = false;
   std::array<std::vector<std::byte>, 2> kept_sets_;  ///< as they were before the first case
   std::int64_t shaft_ = 1;                           ///< 0: held
   bool has_rested_ = false;                          ///< while nothing drove it and nothing held it
-  Instant next_tick_{};
-  std::uint16_t rate_hz_ = 0;
+  Instant next_tick_{};  ///< from `kSlow` on within a sixth of the time between two of them
+  std::uint16_t rate_hz_ = kIdleRateHz;
+  bool is_slow_ = false;
 };
 
 }  // namespace armjig::morap::conformance

@@ -18,6 +18,7 @@ constexpr std::array kStarts{
     StartState{"disabled, with the stored controllers", Hazard::kProgram},
     StartState{"fresh from power-up, the shaft held", Hazard::kState},
     StartState{"calibrated, the shaft free", Hazard::kProgram},
+    StartState{"calibrated, the shaft free, for slow loops", Hazard::kProgram},
 };
 
 constexpr std::array kSubjects{

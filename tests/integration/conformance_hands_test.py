@@ -5,6 +5,7 @@
 usage: conformance_hands_test.py ARMJIG
 """
 import concurrent.futures
+import contextlib
 import json
 import os
 import signal
@@ -44,6 +45,7 @@ class Folder:
     def __init__(self, armjig, path):
         self.armjig = armjig
         self.path = path
+        self.environment = dict(os.environ)  # of programs that are to find the device
 
     def file(self, name):
         return os.path.join(self.path, name)
@@ -63,10 +65,11 @@ class Folder:
         ended = subprocess.run([self.armjig, "conformance", device, "--target", target, "--allow",
                                 "all", "--filter", case, "--require", "0", "--json", report,
                                 *options], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               text=True, timeout=280)
+                               text=True, timeout=280, env=self.environment)
         result = json.load(open(report))
         assert "processors" in result["facts"]["host load"], result["facts"]
-        assert "an emulated device's answers in" in result["facts"], result["facts"]
+        has_twin = not target.startswith("i2c:")
+        assert has_twin == ("an emulated device's answers in" in result["facts"]), result["facts"]
         rows = result["rows"]
         return {row["name"]: row["verdict"] for row in rows}, ended.stdout
 
@@ -102,17 +105,30 @@ def check_restart(armjig, path):
     return f"restarted {folder.told().count('restarted') - 1} times"
 
 
-def check_hand(armjig, path):
+@contextlib.contextmanager
+def emulated_with_hands(armjig, path, device):
+    """An emulated device that takes inputs, its place, and a command that sets them."""
     folder = Folder(armjig, path)
     os.mkfifo(folder.file("input"))
     hand = folder.script("hand", SET)
-    power = folder.script("power", POWER)
     entry = os.open(folder.file("input"), os.O_RDWR)  # kept open, so that it never ends
     said = open(folder.file("said"), "w")
-    emulator = subprocess.Popen([armjig, "emulate", "parol6", "--json"], stdin=entry,
+    emulator = subprocess.Popen([armjig, "emulate", device, "--json"], stdin=entry,
                                 stdout=subprocess.PIPE, stderr=said, text=True)
     try:
-        target = json.loads(emulator.stdout.readline())["listening"][0]
+        place = json.loads(emulator.stdout.readline())
+        folder.environment |= dict(word.split("=", 1) for word in place.get("environment", []))
+        yield folder, place["listening"][0], hand
+    finally:
+        emulator.send_signal(signal.SIGTERM)
+        emulator.wait(timeout=30)
+        os.close(entry)
+        said.close()
+
+
+def check_hand(armjig, path):
+    with emulated_with_hands(armjig, path, "parol6") as (folder, target, hand):
+        power = folder.script("power", POWER)
         for case in ("parol6.io.in1-bit", "parol6.command.zero-at-start"):
             alone, out = folder.verdicts("parol6", target, case)
             assert set(alone.values()) == {"skipped"}, out
@@ -122,19 +138,26 @@ def check_hand(armjig, path):
         told = folder.told()
         assert "in1 1" in told and "in1 0" in told, told
         assert "switched" in told and "power 1" not in told, told
-    finally:
-        emulator.send_signal(signal.SIGTERM)
-        emulator.wait(timeout=30)
-        os.close(entry)
-        said.close()
     return f"{len(told) - 1} things done by hand"
 
 
+def check_bus(armjig, path):
+    """A hand holds the shaft; what has to come between two ticks of an idle node stays skipped."""
+    with emulated_with_hands(armjig, path, "morap") as (folder, target, hand):
+        alone, out = folder.verdicts("morap", target, "morap.angle.scale")
+        assert set(alone.values()) == {"skipped"}, out
+        verdicts, out = folder.verdicts("morap", target, "morap.angle.scale", "--hand", hand)
+        assert verdicts and set(verdicts.values()) == {"pass"}, out
+        verdicts, out = folder.verdicts("morap", target, "at-tick", "--hand", hand)
+        for name, verdict in verdicts.items():
+            assert verdict == ("pass" if name.endswith(".slowly") else "skipped"), out
+    return f"{len(verdicts)} cases at ticks"
+
+
 def main(armjig):
-    with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
-        with concurrent.futures.ThreadPoolExecutor() as both:
-            runs = [both.submit(check_restart, armjig, one),
-                    both.submit(check_hand, armjig, other)]
+    with contextlib.ExitStack() as folders, concurrent.futures.ThreadPoolExecutor() as pool:
+        runs = [pool.submit(check, armjig, folders.enter_context(tempfile.TemporaryDirectory()))
+                for check in (check_restart, check_hand, check_bus)]
         for run in runs:
             print(run.result())
 

@@ -10,8 +10,8 @@
 //
 //   mutation_judge wire DEVICE OBJECT TARGET SESSIONS
 //
-// tells whether so many sessions that consist of nothing but bytes on a link, in virtual time, tell it
-// from the emulator of this program. Prints what they differ in, or "same".
+// tells whether so many sessions that consist of nothing but bytes on a link, in virtual time, tell
+// it from the emulator of this program. Prints what they differ in, or "same".
 //
 //   mutation_judge serve DEVICE OBJECT ARGUMENT...
 //
@@ -83,13 +83,19 @@ Outcome<std::string> told_apart_by(const cli::Device& device,
   return std::string{};
 }
 
+/// Nobody reads what they differ in, so it is not made shorter.
+PlaySessions sessions_as_they_are(const cli::Device& device, const Target& target,
+                                  const cli::Device& own) {
+  return cli::sessions_beside(device, target, own, /*most_attempts=*/0);
+}
+
 /// What the suite says: the first case that fails, or how many passed.
 /// `own` has the emulator of this program.
 std::string judgement(const cli::Device& device, const cli::Device& own, const Target& target,
                       Tier tier) {
   const auto bench = cli::open_bench(device, {.target = target});
   if (!bench) return "killed: the start, " + describe(bench.error());
-  (*bench)->know_sessions(cli::sessions_beside(device, target, own));
+  (*bench)->know_sessions(sessions_as_they_are(device, target, own));
   RunOptions run;
   run.selection.tier = tier;
   run.stops_at_first_failure = true;
@@ -119,7 +125,7 @@ Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Tar
 void judge_on_wire(const cli::Device& device, const cli::Device& own, const Target& target,
                    std::uint64_t count) {
   constexpr std::uint64_t kSeed = 1;
-  const auto difference = cli::sessions_beside(device, target, own)(kSeed, count);
+  const auto difference = sessions_as_they_are(device, target, own)(kSeed, count);
   fmt::print("{}\n", difference ? difference->value_or("same") : describe(difference.error()));
 }
 

@@ -4,21 +4,18 @@
 namespace armjig::morap::conformance {
 namespace {
 
-constexpr std::uint16_t kRate = 200;
+constexpr std::uint16_t kRate = kIdleRateHz;
 
 ControllerSet position_set(std::initializer_list<float> d, std::initializer_list<float> c,
-                           std::initializer_list<float> f, float integral = 0.0F) {
-  return {ControllerKind::kPosition, kRate, filter(d), filter(c), filter(f), integral};
+                           std::initializer_list<float> f, float integral = 0.0F,
+                           std::uint16_t rate_hz = kRate) {
+  return {ControllerKind::kPosition, rate_hz, filter(d), filter(c), filter(f), integral};
 }
 
-/// Up to the tick at which the loop computes for the first time.
-void run(NodeBench& node, const ControllerSet& set, float reference) {
-  const bool is_speed = set.kind == ControllerKind::kSpeed;
-  node.send(set);
-  node.send(kCalibrateZero);
-  node.tick();
-  node.send(is_speed ? kSpeed : kPosition, reference);
-  node.tick(set.rate_hz);
+/// One that minds nothing but its reference, so that it does not matter where the shaft is.
+ControllerSet blind_set(NodeBench& node, std::initializer_list<float> c,
+                        std::initializer_list<float> f, float integral = 0.0F) {
+  return position_set({0.0F}, c, f, integral, node.loop_rate());
 }
 
 /// So many counts, and the gain with which their angle gives 0.25 V.
@@ -60,7 +57,7 @@ struct Sample {
 void follow(NodeBench& node, const ControllerSet& set, std::span<const Sample> samples) {
   const MotorLaw motor{node.motor()};
   LoopLaw law{node.motor(), set, 0, double{samples[0].reference}};
-  run(node, set, samples[0].reference);
+  run_loop(node, set, samples[0].reference);
   int counts = samples[0].counts;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const auto& [reference, place] = samples[i];
@@ -86,9 +83,125 @@ void stored(NodeBench& node, CommandId mode, float reference, std::string_view s
   node.expect_levels_at_ticks(levels_by_law(node, set, reference, counts));
 }
 
+/// Far from where any shaft is, and the gain of an integrator small for it: a shaft that turns
+/// meanwhile is as good as one at rest.
+constexpr float kFar = 75.0F;
+
 /// Whose output grows by four levels at each tick.
 void run_integrator(NodeBench& node) {
-  run(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.25F), 0.75F);
+  run_loop(node, blind_set(node, {0.0F}, {0.0F}, 0.0025F), kFar);
+}
+
+// On a held shaft, where each tick is known, and on one that may turn, where they are far apart.
+
+void comes_a_tick_late(NodeBench& node) {
+  run_loop(node, proportional(node.loop_rate(), 1.0F), 0.75F);
+  node.expect_levels(0);
+  node.expect_levels_at_ticks({16});
+}
+
+void orders_references(NodeBench& node) {
+  run_loop(node, blind_set(node, {1.0F, 2.0F}, {0.0F}), 0.25F);
+  node.send(kPosition, 0.5F);
+  node.expect_levels_at_ticks({16, 27, 32});  // 0.25 + 2 * 0.5 = 1.25 V, then 1.5 V
+}
+
+void follows_references(NodeBench& node) {
+  constexpr Sample kSamples[] = {{0.25F, 0}, {0.5F, 0},  {-0.25F, 0},  {0.125F, 0},
+                                 {0.0F, 0},  {0.75F, 0}, {0.0625F, 0}, {0.0F, 0}};
+  const auto set = blind_set(node, {0.3F, -0.5F, 1.1F, 0.7F}, {0.0F});
+  follow(node, set, kSamples);
+}
+
+void echoes_outputs(NodeBench& node) {
+  constexpr Sample kSamples[] = {{0, 0}, {1.0F, 0}, {0, 0}, {0, 0},    {0, 0},
+                                 {0, 0}, {0, 0},    {0, 0}, {0.5F, 0}, {0, 0}};
+  const auto set = blind_set(node, {0.75F}, {-0.2F, 0.3F, 0.4F, -0.5F});
+  follow(node, set, kSamples);
+}
+
+void takes_off_an_output(NodeBench& node) {
+  run_loop(node, blind_set(node, {0.375F}, {-0.5F}), 1.0F);
+  node.expect_levels_at_ticks({8, 12, 14, 15});  // half of the one before, and 8
+}
+
+void orders_outputs(NodeBench& node) {
+  run_loop(node, blind_set(node, {0.375F}, {-0.5F, 0.0F}), 1.0F);
+  node.expect_levels_at_ticks({8, 8, 12, 12, 14});  // half of the one before that, and 8
+}
+
+void begins_with_reference(NodeBench& node) {
+  run_loop(node, blind_set(node, {1.0F, 2.0F}, {0.0F}), 0.25F);
+  node.expect_levels_at_ticks({16, 16});
+}
+
+void integrates_references(NodeBench& node) {
+  run_integrator(node);
+  node.expect_levels_at_ticks({4, 8, 12, 16});
+}
+
+void integrates_nothing(NodeBench& node) {
+  run_loop(node, blind_set(node, {0.5F}, {0.0F}, -0.25F), 0.75F);
+  node.expect_levels_at_ticks({8, 8, 8});
+}
+
+void has_its_own_controller(NodeBench& node) {
+  node.send(proportional(node.loop_rate(), 2.0F, ControllerKind::kSpeed));
+  node.tick();
+  run_loop(node, proportional(node.loop_rate(), 1.0F), 0.75F);
+  node.expect_levels_at_ticks({16});
+  node.send(kSpeed, 0.75F);
+  node.expect_levels_at_ticks({16, 32});
+}
+
+void has_its_own_reference(NodeBench& node) {
+  node.send(proportional(node.loop_rate(), 1.0F, ControllerKind::kSpeed));
+  node.tick();
+  run_loop(node, proportional(node.loop_rate(), 1.0F), 0.75F);
+  node.send(kSpeed, 0.375F);
+  node.expect_levels_at_ticks({16, 8});
+  node.send(kPosition, 0.75F);
+  node.expect_levels_at_ticks({8, 16});
+}
+
+void begins_anew_in_another_mode(NodeBench& node) {
+  run_integrator(node);
+  node.expect_levels_at_ticks({4, 8});
+  node.send(kVoltage, 0.0F);
+  node.tick(kIdleRateHz);
+  node.expect_levels(0);
+  node.send(kPosition, kFar);
+  node.tick(node.loop_rate());
+  node.expect_levels(0);
+  node.expect_levels_at_ticks({4, 8});
+}
+
+void goes_on_with_another_reference(NodeBench& node) {
+  run_integrator(node);
+  node.send(kPosition, kFar / 2);
+  node.expect_levels_at_ticks({4, 6, 8});
+}
+
+void begins_anew_with_parameters(NodeBench& node) {
+  run_integrator(node);
+  node.expect_levels_at_ticks({4, 8});
+  node.send(proportional(node.loop_rate(), 1.0F, ControllerKind::kSpeed));
+  node.expect_levels_at_ticks({12, 4, 8});
+}
+
+void goes_on_when_enabled_again(NodeBench& node) {
+  run_integrator(node);
+  node.expect_levels_at_ticks({4, 8});
+  node.send(kDisable);
+  node.send(kPosition, kFar);
+  node.expect_levels_at_ticks({12, 16});
+}
+
+template <int sign>
+void limits_at_first(NodeBench& node) {
+  run_loop(node, proportional(node.loop_rate(), 10.0F), static_cast<float>(sign) * 0.5F);
+  node.expect_levels_at_ticks({sign * node.motor().standstill_levels});
+  node.send(kDisable);
 }
 
 constexpr Case loop(std::string_view rule, CaseBody run) {
@@ -99,12 +212,8 @@ constexpr Clause kLoopClauses[] = {
     must("morap.loop.one-tick-late",
          "What a feedback loop computes at a tick is applied at the next.", "vector 63",
          Profiles::kFirmware),
-    loop("A gain of 1.",
-         [](NodeBench& node) {
-           run(node, proportional(kRate, 1.0F), 0.75F);
-           node.expect_levels(0);
-           node.expect_levels_at_ticks({16});
-         }),
+    loop("A gain of 1.", on<comes_a_tick_late>),
+    variant("slowly", slowly(on<comes_a_tick_late>)),
 
     must("morap.loop.position-default",
          "The stored position controller answers a step of 1 rad of a held shaft as recorded.",
@@ -123,12 +232,8 @@ constexpr Clause kLoopClauses[] = {
     must("morap.loop.reference-order",
          "The last coefficient of the reference belongs to its newest sample.",
          "recording static-custom-controller-locked", Profiles::kFirmware),
-    loop("1 and 2, with another reference on the way.",
-         [](NodeBench& node) {
-           run(node, position_set({0.0F}, {1.0F, 2.0F}, {0.0F}), 0.25F);
-           node.send(kPosition, 0.5F);
-           node.expect_levels_at_ticks({16, 27, 32});  // 0.25 + 2 * 0.5 = 1.25 V, then 1.5 V
-         }),
+    loop("1 and 2, with another reference on the way.", on<orders_references>),
+    variant("slowly", slowly(on<orders_references>)),
 
     must("morap.loop.measured-order",
          "The last coefficient of the angle belongs to its newest sample, and is taken off.",
@@ -136,7 +241,7 @@ constexpr Clause kLoopClauses[] = {
     loop("1 and 2, with a turn of the shaft.",
          [](NodeBench& node) {
            const float gain = gain_of_counts(node);
-           run(node, position_set({gain, 2 * gain}, {0.0F}, {0.0F}), 0.0F);
+           run_loop(node, position_set({gain, 2 * gain}, {0.0F}, {0.0F}), 0.0F);
            node.turn(kCounts);
            node.expect_levels_at_ticks({0, -11, -16});  // -0.5 V, then -0.75 V
          }),
@@ -144,14 +249,8 @@ constexpr Clause kLoopClauses[] = {
     must("morap.loop.four-coefficients",
          "All four coefficients of each filter count, each for its own sample.",
          "firmware, feedback loop; recording static-custom-controller-locked", Profiles::kFirmware),
-    variant("reference",
-            loop("Six references, one after the other.",
-                 [](NodeBench& node) {
-                   constexpr Sample kSamples[] = {{0.25F, 0}, {0.5F, 0},  {-0.25F, 0},  {0.125F, 0},
-                                                  {0.0F, 0},  {0.75F, 0}, {0.0625F, 0}, {0.0F, 0}};
-                   const auto set = position_set({0.0F}, {0.3F, -0.5F, 1.1F, 0.7F}, {0.0F});
-                   follow(node, set, kSamples);
-                 })),
+    variant("reference", loop("Six references, one after the other.", on<follows_references>)),
+    variant("slowly.reference", slowly(on<follows_references>)),
     variant("angle", loop("The shaft at six places, one after the other.",
                           [](NodeBench& node) {
                             constexpr Sample kSamples[] = {{0, 0}, {0, 10}, {0, -20}, {0, 30},
@@ -162,14 +261,8 @@ constexpr Clause kLoopClauses[] = {
                                              {0.0F}, {0.0F});
                             follow(node, set, kSamples);
                           })),
-    variant("output",
-            loop("The echo of one reference.",
-                 [](NodeBench& node) {
-                   constexpr Sample kSamples[] = {{0, 0}, {1.0F, 0}, {0, 0}, {0, 0},    {0, 0},
-                                                  {0, 0}, {0, 0},    {0, 0}, {0.5F, 0}, {0, 0}};
-                   const auto set = position_set({0.0F}, {0.75F}, {-0.2F, 0.3F, 0.4F, -0.5F});
-                   follow(node, set, kSamples);
-                 })),
+    variant("output", loop("The echo of one reference.", on<echoes_outputs>)),
+    variant("slowly.output", slowly(on<echoes_outputs>)),
 
     must("morap.loop.begins-still",
          "A speed loop begins as if the shaft had always stood, however far it was turned before.",
@@ -189,29 +282,20 @@ constexpr Clause kLoopClauses[] = {
 
     must("morap.loop.feedback-of-output", "The coefficients of earlier outputs are taken off.",
          "recording static-custom-controller-locked", Profiles::kFirmware),
-    loop("-0.5.",
-         [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.375F}, {-0.5F}), 1.0F);
-           node.expect_levels_at_ticks({8, 12, 14, 15});  // half of the one before, and 8
-         }),
+    loop("-0.5.", on<takes_off_an_output>),
+    variant("slowly", slowly(on<takes_off_an_output>)),
 
     must("morap.loop.output-order",
          "The last coefficient of earlier outputs belongs to the newest of them.",
          "recording static-custom-controller-locked", Profiles::kFirmware),
-    loop("-0.5 and 0.",
-         [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.375F}, {-0.5F, 0.0F}), 1.0F);
-           node.expect_levels_at_ticks({8, 8, 12, 12, 14});  // half of the one before that, and 8
-         }),
+    loop("-0.5 and 0.", on<orders_outputs>),
+    variant("slowly", slowly(on<orders_outputs>)),
 
     must("morap.loop.begins-with-reference",
          "A loop begins as if its reference had always been there.", "firmware, feedback loop",
          Profiles::kFirmware),
-    loop("Two samples of it count.",
-         [](NodeBench& node) {
-           run(node, position_set({0.0F}, {1.0F, 2.0F}, {0.0F}), 0.25F);
-           node.expect_levels_at_ticks({16, 16});
-         }),
+    loop("Two samples of it count.", on<begins_with_reference>),
+    variant("slowly", slowly(on<begins_with_reference>)),
 
     must("morap.loop.begins-with-angle",
          "A position loop begins as if the shaft had always stood where it is.",
@@ -226,11 +310,8 @@ constexpr Clause kLoopClauses[] = {
     must("morap.loop.integral-of-reference",
          "The integrator adds the reference times its gain at each tick, from the first on.",
          "recording static-speed-locked", Profiles::kFirmware),
-    loop("Nothing but an integrator.",
-         [](NodeBench& node) {
-           run_integrator(node);
-           node.expect_levels_at_ticks({4, 8, 12, 16});
-         }),
+    loop("Nothing but an integrator.", on<integrates_references>),
+    variant("slowly", slowly(on<integrates_references>)),
 
     must("morap.loop.integral-of-angle", "And takes off the measured value times its gain.",
          "firmware, feedback loop", Profiles::kFirmware),
@@ -242,11 +323,8 @@ constexpr Clause kLoopClauses[] = {
 
     must("morap.loop.negative-integral", "A negative gain of the integrator is none.",
          "firmware, feedback loop", Profiles::kFirmware),
-    loop("-0.25 beside a gain of 0.5.",
-         [](NodeBench& node) {
-           run(node, position_set({0.0F}, {0.5F}, {0.0F}, -0.25F), 0.75F);
-           node.expect_levels_at_ticks({8, 8, 8});
-         }),
+    loop("-0.25 beside a gain of 0.5.", on<integrates_nothing>),
+    variant("slowly", slowly(on<integrates_nothing>)),
 
     must("morap.loop.anti-windup",
          "Behind a sample with a limited output the integrators stand still.",
@@ -254,11 +332,18 @@ constexpr Clause kLoopClauses[] = {
     loop("Three limited samples, then a reference of 0.",
          [](NodeBench& node) {
            const int most = node.motor().standstill_levels;
-           run(node, position_set({0.0F}, {10.0F}, {0.0F}, 0.375F), 1.0F);
+           run_loop(node, position_set({0.0F}, {10.0F}, {0.0F}, 0.375F), 1.0F);
            node.expect_levels_at_ticks({most, most, most});
            node.send(kPosition, 0.0F);
            node.expect_levels_at_ticks({most, 8, 8});  // of the first sample only
          }),
+    variant("slowly", slowly([](NodeBench& node) {
+              run_loop(node, blind_set(node, {0.5F}, {0.0F}, 0.005F), kFar);
+              node.expect_levels_at_ticks({node.motor().standstill_levels});
+              node.send(kPosition, 0.0F);
+              node.tick();  // by then the shaft turns
+              node.expect_levels_at_ticks({8, 8});
+            })),
 
     must("morap.loop.current-limit",
          "At standstill a loop is limited to the voltage of the rated current, both ways.",
@@ -266,11 +351,13 @@ constexpr Clause kLoopClauses[] = {
     loop("10 V and -10 V.",
          [](NodeBench& node) {
            const int most = node.motor().standstill_levels;
-           run(node, proportional(kRate, 10.0F), 1.0F);
+           run_loop(node, proportional(kRate, 10.0F), 1.0F);
            node.expect_levels_at_ticks({most});
            node.send(kPosition, -1.0F);
            node.expect_levels_at_ticks({most, -most});
          }),
+    variant("slowly", slowly(on<limits_at_first<1>>)),
+    variant("slowly.negative", slowly(on<limits_at_first<-1>>)),
 
     must("morap.loop.current-limit-speed",
          "The limit of a loop follows the speed, of which a fifth is new at each tick.",
@@ -278,7 +365,7 @@ constexpr Clause kLoopClauses[] = {
     loop("10 V, and one turn of the shaft.",
          [](NodeBench& node) {
            const auto set = proportional(kRate, 10.0F);
-           run(node, set, 1.0F);
+           run_loop(node, set, 1.0F);
            node.tick();
            node.turn(67);
            node.tick();
@@ -291,7 +378,7 @@ constexpr Clause kLoopClauses[] = {
          "recording loop-saturation", Profiles::kFirmware),
     loop("100 V, and a fast turn.",
          [](NodeBench& node) {
-           run(node, proportional(kRate, 100.0F), 1.0F);
+           run_loop(node, proportional(kRate, 100.0F), 1.0F);
            node.tick();
            node.turn(20'000);
            node.tick();
@@ -306,79 +393,42 @@ constexpr Clause kLoopClauses[] = {
            constexpr std::uint16_t kSpeedRate = 400;
            auto set = proportional(kSpeedRate, 0.0F, ControllerKind::kSpeed);
            set.d = filter({gain_of_counts(node) / static_cast<float>(kSpeedRate)});
-           run(node, set, 0.0F);
+           run_loop(node, set, 0.0F);
            node.turn(kCounts);
            node.expect_levels_at_ticks({0, -5, 0});  // -0.25 V
          }),
 
     must("morap.loop.own-controller", "Each mode runs with its own controller.",
          "recording static-mode-switch-locked", Profiles::kFirmware),
-    loop("Gains of 1 and 2.",
-         [](NodeBench& node) {
-           node.send(proportional(kRate, 2.0F, ControllerKind::kSpeed));
-           node.tick();
-           run(node, proportional(kRate, 1.0F), 0.75F);
-           node.expect_levels_at_ticks({16});
-           node.send(kSpeed, 0.75F);
-           node.expect_levels_at_ticks({16, 32});
-         }),
+    loop("Gains of 1 and 2.", on<has_its_own_controller>),
+    variant("slowly", slowly(on<has_its_own_controller>)),
 
     must("morap.loop.own-reference", "Each mode follows its own reference.",
          "recording static-mode-switch-locked", Profiles::kFirmware),
-    loop("0.75 and 0.375.",
-         [](NodeBench& node) {
-           node.send(proportional(kRate, 1.0F, ControllerKind::kSpeed));
-           node.tick();
-           run(node, proportional(kRate, 1.0F), 0.75F);
-           node.send(kSpeed, 0.375F);
-           node.expect_levels_at_ticks({16, 8});
-           node.send(kPosition, 0.75F);
-           node.expect_levels_at_ticks({8, 16});
-         }),
+    loop("0.75 and 0.375.", on<has_its_own_reference>),
+    variant("slowly", slowly(on<has_its_own_reference>)),
 
     must("morap.loop.new-mode-resets", "Another mode begins its loop anew.",
          "recording static-mode-switch-locked", Profiles::kFirmware),
-    loop("An integrator, with a voltage between.",
-         [](NodeBench& node) {
-           run_integrator(node);
-           node.expect_levels_at_ticks({4, 8});
-           node.send(kVoltage, 0.0F);
-           node.expect_levels_at_ticks({0});
-           node.send(kPosition, 0.75F);
-           node.expect_levels_at_ticks({0, 4, 8});
-         }),
+    loop("An integrator, with a voltage between.", on<begins_anew_in_another_mode>),
+    variant("slowly", slowly(on<begins_anew_in_another_mode>)),
 
     must("morap.loop.new-reference-goes-on", "Another reference in the same mode does not.",
          "recording static-position-locked", Profiles::kFirmware),
-    loop("An integrator.",
-         [](NodeBench& node) {
-           run_integrator(node);
-           node.send(kPosition, 0.375F);
-           node.expect_levels_at_ticks({4, 6, 8});
-         }),
+    loop("An integrator.", on<goes_on_with_another_reference>),
+    variant("slowly", slowly(on<goes_on_with_another_reference>)),
 
     must("morap.loop.new-parameters-reset",
          "Newly installed parameters of any controller begin the running loop anew.",
          "firmware, tick", Profiles::kFirmware),
-    loop("An integrator, and the speed controller.",
-         [](NodeBench& node) {
-           run_integrator(node);
-           node.expect_levels_at_ticks({4, 8});
-           node.send(proportional(kRate, 1.0F, ControllerKind::kSpeed));
-           node.expect_levels_at_ticks({12, 4, 8});
-         }),
+    loop("An integrator, and the speed controller.", on<begins_anew_with_parameters>),
+    variant("slowly", slowly(on<begins_anew_with_parameters>)),
 
     must("morap.loop.reenabled-goes-on",
          "A loop that was disabled and enabled between two ticks goes on.",
          "recording static-reenable-within-tick", Profiles::kFirmware),
-    loop("An integrator.",
-         [](NodeBench& node) {
-           run_integrator(node);
-           node.expect_levels_at_ticks({4, 8});
-           node.send(kDisable);
-           node.send(kPosition, 0.75F);
-           node.expect_levels_at_ticks({12, 16});
-         }),
+    loop("An integrator.", on<goes_on_when_enabled_again>),
+    variant("slowly", slowly(on<goes_on_when_enabled_again>)),
 };
 
 }  // namespace

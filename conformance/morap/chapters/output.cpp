@@ -86,6 +86,41 @@ void expect_direct_settled(NodeBench& node, float volts, int levels) {
   node.expect_levels(levels);
 }
 
+/// The voltage at the first tick behind a reference, if it was read before the second.
+int first_levels(NodeBench& node, CommandId mode, float reference) {
+  constexpr int kMostReads = 12;
+  node.bring_to(kFree);
+  node.send(mode, reference);
+  int levels = 0;
+  for (int i = 0; i < kMostReads && levels == 0; ++i) {
+    levels = levels_of(static_cast<double>(node.number(kReadVoltage)));
+  }
+  node.send(kDisable);
+  return levels;
+}
+
+/// Of a free shaft at rest: it is driven for some ticks and let go. In real time the first tick may
+/// be missed, and gets further tries.
+void expect_first_levels(NodeBench& node, CommandId mode, float reference, int levels) {
+  const int tries = node.noise() > Duration{} ? 12 : 1;
+  int last = 0;
+  for (int i = 0; i < tries && last != levels; ++i) last = first_levels(node, mode, reference);
+  node.about(fmt::format("asked for {}", reference));
+  node.expect_true(last == levels, fmt::format("{} levels before it turns", levels),
+                   fmt::format("{}", last));
+}
+
+/// More than drives the rated current.
+template <CommandId mode, int sign, bool is_limited>
+void drive_at_rest(NodeBench& node) {
+  const int most = node.motor().standstill_levels;
+  const int asked = most * 3 / 2;
+  expect_first_levels(node, mode, static_cast<float>(sign * asked) * kVoltsPerLevel,
+                      sign * (is_limited ? most : asked));
+}
+
+constexpr Case at_rest(CaseBody run) { return from(kFree, Hazard::kMove, run); }
+
 constexpr Clause kOutputClauses[] = {
     must("morap.voltage.close", "A drive voltage inside the limits is applied to within 0.05 V.",
          "document, applied voltage; firmware: a step is 0.046875 V"),
@@ -152,6 +187,12 @@ constexpr Clause kOutputClauses[] = {
             calibrate(node);
             expect_voltage_at_tick(node);
           }),
+    variant("slowly", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              node.send(kVoltage, 1.5F);
+              expect_step_at_tick(node, 16, 32, kIdleRateHz);
+              node.send(kDisable);
+            })),
 
     must("morap.voltage.disabled-at-tick",
          "Disabling takes the voltage away at the next tick and not before.",
@@ -164,6 +205,11 @@ constexpr Clause kOutputClauses[] = {
             node.send(kDisable);
             expect_step_at_tick(node, 32, 0);
           }),
+    variant("slowly", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              node.send(kDisable);
+              expect_step_at_tick(node, 16, 0, kIdleRateHz);
+            })),
 
     must("morap.voltage.current-limit",
          "At standstill the drive voltage is limited to what drives the rated current.",
@@ -175,6 +221,7 @@ constexpr Clause kOutputClauses[] = {
             node.tick();
             node.expect_levels(node.motor().standstill_levels);
           }),
+    variant("free", at_rest(on<drive_at_rest<kVoltage, 1, true>>)),
 
     must("morap.voltage.current-limit-negative", "So is a negative drive voltage.",
          "recording static-voltage-limited"),
@@ -185,6 +232,7 @@ constexpr Clause kOutputClauses[] = {
             node.tick();
             node.expect_levels(-node.motor().standstill_levels);
           }),
+    variant("free", at_rest(on<drive_at_rest<kVoltage, -1, true>>)),
 
     must("morap.voltage.overspeed",
          "A shaft that turns too fast for the drive voltage gets a higher one, up to the limit.",
@@ -214,6 +262,7 @@ constexpr Clause kOutputClauses[] = {
             calibrate(node);
             expect_direct(node, 10.0F, 213);
           }),
+    variant("free", at_rest(on<drive_at_rest<kDirectVoltage, 1, false>>)),
 
     must("morap.direct.limit", "No voltage beyond 20 V is applied, which reads as 20.015625 V.",
          "vector 58", Profiles::kFirmware),
@@ -270,6 +319,13 @@ constexpr Clause kOutputClauses[] = {
               node.expect_levels(levels_of(MotorLaw{node.motor()}.torque_voltage(torque, 0)));
             }
           }),
+    variant("free", at_rest([](NodeBench& node) {
+              for (const float torque : {1.0F, -2.0F}) {
+                const MotorLaw law{node.motor()};
+                expect_first_levels(node, kTorque, torque,
+                                    levels_of(law.torque_voltage(double{torque}, 0)));
+              }
+            })),
 
     must("morap.torque.limit", "A torque is limited to that of the rated current.",
          "vector 61; recording static-torque-limited", Profiles::kFirmware),
@@ -282,6 +338,12 @@ constexpr Clause kOutputClauses[] = {
               node.expect_levels(sign * node.motor().standstill_levels);
             }
           }),
+    variant("free", at_rest([](NodeBench& node) {
+              for (const int sign : {1, -1}) {
+                expect_first_levels(node, kTorque, static_cast<float>(10 * sign),
+                                    sign * node.motor().standstill_levels);
+              }
+            })),
 
     must("morap.torque.motion",
          "To the voltage of a torque that of the motion is added, for one tick without a filter.",
@@ -318,6 +380,16 @@ constexpr Clause kOutputClauses[] = {
               node.expect_bytes(kReadCurrent, bytes);
             }
           }),
+    variant("starting", at_rest([](NodeBench& node) {
+              constexpr double kStep = 2.60678e-3;
+              node.send(kVoltage, 1.5F);
+              for (int i = 0; i < 20; ++i) {
+                const double steps = double{node.number(kReadCurrent)} / kStep;
+                node.expect_true(std::fabs(steps - std::round(steps)) < 0.01, "whole steps",
+                                 fmt::format("{} of them", steps));
+              }
+              node.send(kDisable);
+            })),
 
     must("morap.current.zero", "Without a current 0 is read.", "firmware, current"),
     fresh("At power-on.", [](NodeBench& node) { node.expect_number(kReadCurrent, 0.0F); }),

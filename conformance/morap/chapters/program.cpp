@@ -68,6 +68,43 @@ void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
   node.expect_same(node.read(selector, 31), before);
 }
 
+/// The new ones, which do nothing when they run, are read before and behind the next tick.
+void expect_in_use_at_tick(NodeBench& node) {
+  program(node, "01 2C 01 01 00 00 20 41 01 00 00 20 41 01 00 00 00 00 00 00 00 00 0C");
+  node.expect_programming(kSuccess);
+  const auto before = node.read(kReadSpeedSet, 4);
+  node.expect_true(before[1] != std::byte{0x2C}, "the parameters before, before the tick",
+                   "the new ones");
+  node.tick();
+  node.expect_bytes(kReadSpeedSet, "01 2C 01 01");
+}
+
+/// A position and a speed controller before the next tick.
+void expect_last_in_use(NodeBench& node) {
+  const auto before = node.read(kReadPositionSet, 4);
+  program(node, "00 C8 00 01 00 00 00 00 01 00 00 00 00 01 00 00 00 00 00 00 00 00", " 34");
+  program(node, "01 2C 01 01 00 00 20 41 01 00 00 20 41 01 00 00 00 00 00 00 00 00", " 0C");
+  node.ticks(2);
+  node.expect_same(node.read(kReadPositionSet, 4), before);
+  node.expect_bytes(kReadSpeedSet, "01 2C 01 01");
+}
+
+/// All bits of each coefficient set, then none.
+void expect_all_bits_kept(NodeBench& node) {
+  for (const std::uint32_t bits : {UINT32_MAX, std::uint32_t{0}}) {
+    Coefficients some{kMostCoefficients};
+    some.values.fill(std::bit_cast<float>(bits));
+    const auto rate = static_cast<std::uint16_t>(bits == 0 ? 0x0100 : 0x02FF);
+    const auto message =
+        encode(Command{kProgram, ControllerSet{ControllerKind::kSpeed, rate, some, some, some,
+                                               std::bit_cast<float>(bits)}});
+    node.send_bytes(message);
+    node.settle();
+    node.expect_same(node.read(kReadSpeedSet, message.view().size() - 1),
+                     message.view().subspan(1));
+  }
+}
+
 /// A whole message and a refused one before the next tick. What is then in use must never run.
 void expect_too_many(NodeBench& node, std::string_view refused, CommandId selector,
                      std::string_view read_back) {
@@ -138,14 +175,13 @@ constexpr Clause kProgramClauses[] = {
         "Read before and behind the tick.",
         [](NodeBench& node) {
           node.tick();
-          program(node, "00 C8 00 01 00 00 20 41 01 00 00 20 41 01 00 00 00 00 00 00 00 00 71");
-          const auto before = node.read(kReadPositionSet, 4);
-          node.expect_true(before[1] != std::byte{0xC8}, "the parameters before, before the tick",
-                           "the new ones");
-          node.tick();
-          node.expect_bytes(kReadPositionSet, "00 C8 00 01");
+          expect_in_use_at_tick(node);
         },
         kFresh),
+    variant("slowly", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              expect_in_use_at_tick(node);
+            })),
 
     must("morap.program.four", "Up to four coefficients of each filter are taken.",
          "document, programming; reference, example 9"),
@@ -183,6 +219,8 @@ constexpr Clause kProgramClauses[] = {
               "01 90 01 02 00 00 00 00 00 00 00 80 02 01 02 80 7F 00 00 80 FF 01 00 00 00 00 00 00 "
               "00 00 64");
         }),
+
+    variant("one-after-the-other", programming("All bits, then none.", on<expect_all_bits_kept>)),
 
     must("morap.program.too-many-d",
          "A count above 4 of the first filter makes the status 3 at once.", "vector 32"),
@@ -418,14 +456,13 @@ constexpr Clause kProgramClauses[] = {
         "A position and a speed controller.",
         [](NodeBench& node) {
           node.tick();
-          const auto before = node.read(kReadPositionSet, 4);
-          program(node, "00 C8 00 00 00 00 00 00 00 00", " 37");
-          program(node, "01 C8 00 00 00 00 00 00 00 00", " 36");
-          node.ticks(2);
-          node.expect_same(node.read(kReadPositionSet, 4), before);
-          node.expect_bytes(kReadSpeedSet, "01 C8 00 00");
+          expect_last_in_use(node);
         },
         kFresh),
+    variant("slowly", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              expect_last_in_use(node);
+            })),
 
     must("morap.defaults.status", "Loading the stored controllers makes the programming status 1.",
          "vector 41", Profiles::kFirmware),
@@ -477,6 +514,17 @@ constexpr Clause kProgramClauses[] = {
           node.expect_same(node.read(kReadPositionSet, 4), before);
         },
         kFresh),
+    variant("slowly", slowly([](NodeBench& node) {
+              const auto before = node.read(kReadSpeedSet, 4);
+              node.send(proportional(node.loop_rate(), 0.0F, ControllerKind::kSpeed));
+              node.tick();
+              run_slow_loop(node);
+              node.send(kDefaultControllers);
+              node.expect_bytes(kReadSpeedSet, "01 05 00 01");
+              node.send(kDisable);  // what is stored is not to run from here
+              node.tick(kIdleRateHz);
+              node.expect_same(node.read(kReadSpeedSet, 4), before);
+            })),
 };
 
 }  // namespace

@@ -114,6 +114,14 @@ constexpr Clause kTuneClauses[] = {
           node.expect_bytes(kReadPositionSet, "00 90 01");
         },
         kFresh),
+    variant("slowly", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              node.send_bytes("22 00 CD CC 4C 3E 00 00 10 C1");
+              node.expect_bytes(kReadPositionSet, "00 05 00");
+              node.send(kDisable);  // what was tuned is not to run from here
+              node.tick(kIdleRateHz);
+              node.expect_bytes(kReadPositionSet, "00 90 01");
+            })),
 
     must("morap.tune.positive-pole", "A positive pole makes the status 3.",
          "document: poles are negative; vector 48"),
