@@ -106,10 +106,8 @@ void expect_all_bits_kept(NodeBench& node) {
 }
 
 /// A whole message and a refused one before the next tick. What is then in use must never run.
-void expect_too_many(NodeBench& node, std::string_view refused, CommandId selector,
-                     std::string_view read_back) {
-  node.needs_emulation();
-  node.tick();
+void expect_mixed(NodeBench& node, std::string_view refused, CommandId selector,
+                  std::string_view read_back) {
   program(node, kOfFour);
   node.expect_programming(kSuccess);
   program(node, refused);
@@ -117,6 +115,18 @@ void expect_too_many(NodeBench& node, std::string_view refused, CommandId select
   node.ticks(3);
   node.expect_bytes(selector, read_back);
 }
+
+void expect_too_many(NodeBench& node, std::string_view refused, CommandId selector,
+                     std::string_view read_back) {
+  node.needs_emulation();
+  node.tick();
+  expect_mixed(node, refused, selector, read_back);
+}
+
+constexpr std::string_view kSevenOfSecond = "01 90 01 01 00 00 A0 40 07";
+constexpr std::string_view kSevenReadBack =
+    "01 90 01 01 00 00 A0 40 07 00 00 00 3F 9A 99 19 3F 33 33 33 3F CD CC 4C 3F 00 00 CD CC CC BD "
+    "CD CC 4C BE 9A 99 00 0A D7 23 3C 79";
 
 constexpr Clause kProgramClauses[] = {
     must("morap.program.status-at-boot", "After power-on the programming status is 1.",
@@ -281,12 +291,14 @@ constexpr Clause kProgramClauses[] = {
     variant("c", programming(
                      "7 of the second, behind one of the first.",
                      [](NodeBench& node) {
-                       expect_too_many(node, "01 90 01 01 00 00 A0 40 07", kReadSpeedSet,
-                                       "01 90 01 01 00 00 A0 40 07 00 00 00 3F 9A 99 19 3F 33 33 "
-                                       "33 3F CD CC 4C 3F 00 00 CD CC CC BD CD CC 4C BE 9A 99 00 "
-                                       "0A D7 23 3C 79");
+                       expect_too_many(node, kSevenOfSecond, kReadSpeedSet, kSevenReadBack);
                      },
                      kFresh)),
+    variant("c.slowly", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              expect_mixed(node, kSevenOfSecond, kReadSpeedSet, kSevenReadBack);
+              node.send(kDisable);
+            })),
     variant("f", programming(
                      "5 of the third: the gain of the integrator comes twice.",
                      [](NodeBench& node) {

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "conformance/morap/cases.hpp"
 #include "conformance/morap/node_bench.hpp"
 #include "tests/unit/support/devices.hpp"
 
@@ -62,6 +63,33 @@ TEST(NodeVerdicts, AShaftThatWasDrivenIsWaitedFor) {
   node->pause(1s);
   node->bring_to(kFree);
   EXPECT_EQ(node->judgement().verdict, Verdict::kPass) << node->judgement().actual;
+}
+
+/// What a slow loop comes to if this machine stands still for so long before it looks.
+Verdict verdict_after(Duration stop) {
+  const auto node = free_node("emulated:");
+  node->bring_to(kSlow);
+  run_slow_loop(*node);
+  node->send(CommandId::kPosition, 0.375F);
+  node->tick();
+  node->pause(stop);
+  node->expect_levels(16);
+  return node->judgement().verdict;
+}
+
+TEST(NodeVerdicts, WhoMissesTheMiddleBetweenTwoTicksLeavesTheCaseOpen) {
+  EXPECT_EQ(verdict_after(0ms), Verdict::kPass);
+  EXPECT_EQ(verdict_after(60ms), Verdict::kPass);
+  for (const auto stop : {70ms, 90ms, 120ms, 300ms}) {
+    EXPECT_EQ(verdict_after(stop), Verdict::kInconclusive) << stop.count() << " ms";
+  }
+}
+
+TEST(NodeVerdicts, TicksOfANodeThatIdlesAreNotMetOnALink) {
+  const auto node = free_node("emulated:");
+  node->bring_to(kFree);
+  node->tick();
+  EXPECT_EQ(node->judgement().verdict, Verdict::kSkipped);
 }
 
 }  // namespace
