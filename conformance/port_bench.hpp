@@ -32,7 +32,12 @@ class PortBench : public Bench {
   /// nobody can.
   void touch(std::string_view input, std::int64_t value) {
     if (is_deaf() || reach(input, value)) return;
-    skip(std::string{"needs a hand at the device, to set "}.append(input));
+    miss_hand(input);
+  }
+
+  /// Only where nothing can be damaged: on an emulated device.
+  void needs_emulation() {
+    if (rig_.is_guarded()) skip("nothing that a real device should be brought to");
   }
 
   /// What is to be seen at the device; skips the case where nobody looks.
@@ -52,6 +57,12 @@ class PortBench : public Bench {
   /// Telling the time changes nothing.
   [[nodiscard]] Port& port() const noexcept { return rig_.port(); }
   [[nodiscard]] const Rig<Port>& rig() const noexcept { return rig_; }
+
+  void miss_hand(std::string_view input) {
+    skip(std::string{this->hand().has(input) ? "the hand at the device could not set "
+                                             : "needs a hand at the device, to set "}
+             .append(input));
+  }
 
   /// The same; false where nobody can.
   [[nodiscard]] bool reach(std::string_view input, std::int64_t value) {

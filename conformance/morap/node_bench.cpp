@@ -235,9 +235,14 @@ const Motor& NodeBench::motor() {
   return motors().front();
 }
 
-void NodeBench::power_up(std::int64_t shaft) {
+/// 0: held, 1: free.
+void NodeBench::hold(std::int64_t shaft) {
   touch("shaft", shaft);
-  if (shaft != std::exchange(shaft_, shaft)) has_rested_ = false;
+  if (!is_over() && shaft != std::exchange(shaft_, shaft)) has_rested_ = false;
+}
+
+void NodeBench::power_up(std::int64_t shaft) {
+  hold(shaft);
   touch("adc", 0);
   rate_hz_ = kIdleRateHz;
   next_tick_ = now() + tick_period(kIdleRateHz);
@@ -261,6 +266,7 @@ void NodeBench::bring_to(std::size_t start) {
   is_slow_ = start == kSlow;
   if (start == kListening) return;
   if (start == kFresh) return power_up(0);
+  if (subject_.is_real && shaft_ == 0) hold(1);
   if (start == kFree || start == kSlow) {
     if (!subject_.is_real) power_up(1);
     if (start == kSlow) keep_sets();

@@ -107,8 +107,6 @@ class NodeBench final : public BusBench {
   [[nodiscard]] BusAddress address() const noexcept { return subject_.address; }
   /// Turns the held shaft.
   void turn(int counts) { touch("encoder", counts); }
-  /// Only where nothing can be damaged: on an emulated node.
-  void needs_emulation() { touch("adc", 0); }
 
  protected:
   [[nodiscard]] Duration longest_answer() const noexcept override { return kLongestHold; }
@@ -133,6 +131,7 @@ class NodeBench final : public BusBench {
   void rest();
   [[nodiscard]] Coasting watch_rest();
   void brake();
+  void hold(std::int64_t shaft);
   void power_up(std::int64_t shaft);
   void leave_slow_loop();
   void keep_pace();

@@ -58,6 +58,9 @@ class Rig {
   [[nodiscard]] Port& port() noexcept { return *port_; }
   [[nodiscard]] const Port& port() const noexcept { return *port_; }
 
+  /// Whether a guard stands between: one does, unless the device is emulated.
+  [[nodiscard]] bool is_guarded() const noexcept { return watch_ != nullptr; }
+
   /// Why the guard last refused something or stopped the arm; none if it never did.
   [[nodiscard]] std::optional<Refusal> last_refusal() const {
     return watch_ == nullptr ? std::nullopt : watch_->last_refusal;

@@ -151,6 +151,9 @@ def check_bus(armjig, path):
         verdicts, out = folder.verdicts("morap", target, "at-tick", "--hand", hand)
         for name, verdict in verdicts.items():
             assert verdict == ("pass" if name.endswith(".slowly") else "skipped"), out
+        # Whoever held the shaft lets it go where it has to turn.
+        freed, out = folder.verdicts("morap", target, "current", "--hand", hand)
+        assert freed["morap.current.zero"] == freed["morap.motion.current"] == "pass", out
     return f"{len(verdicts)} cases at ticks"
 
 

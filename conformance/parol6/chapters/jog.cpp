@@ -216,7 +216,8 @@ constexpr Clause kJogClauses[] = {
          "firmware: it knows no joint limits"),
     from(kHomed, Hazard::kMove, "J5 goes beyond 6800 steps.",
          [](BoardBench& board) {
-           board.spoil();  // a guard would not let it go there; so it is an emulated one
+           board.needs_emulation();
+           board.spoil();
            const auto is_outside = [](const Answer& answer) {
              return answer.position[kJ5].value > 6800;
            };

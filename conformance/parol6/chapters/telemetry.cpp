@@ -13,7 +13,8 @@ constexpr int kHarmlessCodes[] = {0, 1, 42, 99, 104, 122, 124, 155, 157, 200, 25
 Answer beyond_range(BoardBench& board) {
   constexpr std::size_t kJoint = 4;
   const auto is_outside = [](const Answer& answer) { return answer.position[kJoint].value > 6420; };
-  board.spoil();  // a guard would not let it go there; so it is an emulated one
+  board.needs_emulation();
+  board.spoil();
   if (!board.ask_until(jog(kJoint, 7000), is_outside, 5s)) {
     board.fail("j5 to go beyond 6420 steps", "it does not");
   }
