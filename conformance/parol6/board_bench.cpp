@@ -255,6 +255,7 @@ void BoardBench::power_cycle() {
   if (reach("in1", 0)) put_back_surroundings();
   touch("power", 1);
   pause(1s);
+  drain(10ms);  // what the case before left unread is no answer to the next one
   origin_.reset();
 }
 
