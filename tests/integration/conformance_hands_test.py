@@ -135,6 +135,8 @@ def check_hand(armjig, path):
             verdicts, out = folder.verdicts("parol6", target, case, "--hand", hand,
                                             "--power-cycle", power)
             assert verdicts and set(verdicts.values()) == {"pass"}, out
+        verdicts, out = folder.verdicts("parol6", target, "estop-ignored", "--hand", hand)
+        assert verdicts and set(verdicts.values()) == {"skipped"}, out  # our own guard ends them
         told = folder.told()
         assert "in1 1" in told and "in1 0" in told, told
         assert "switched" in told and "power 1" not in told, told

@@ -31,8 +31,14 @@ void expect_input(BoardBench& board, std::string_view input, std::uint8_t mask) 
 
 void press(BoardBench& board) { board.touch("estop", 0); }
 
-void press_while_jogging(BoardBench& board) {
+/// A guard lets nothing move, or go on moving, while the stop is pressed.
+void needs_motion_while_pressed(BoardBench& board) {
+  board.needs_emulation();
   board.spoil();
+}
+
+void press_while_jogging(BoardBench& board) {
+  needs_motion_while_pressed(board);
   board.act(jog(4, 500));
   press(board);
 }
@@ -238,6 +244,7 @@ constexpr Clause kIoClauses[] = {
     from(kEnabled, Hazard::kMove,
          "A disabled board can be enabled and jogs while the stop is pressed.",
          [](BoardBench& board) {
+           board.needs_emulation();
            spoil_disabled(board);
            press(board);
            board.act(with_code(kEnable));
@@ -250,7 +257,7 @@ constexpr Clause kIoClauses[] = {
          "parol6.io.estop-ignored-by-enable"),
     from(kEnabled, Hazard::kMove, "Enable has no effect while the stop is pressed.",
          [](BoardBench& board) {
-           board.spoil();
+           needs_motion_while_pressed(board);
            press(board);
            board.act(with_code(kEnable));
            expect_jog_refused(board, "a jog after enable, the emergency stop being pressed");
@@ -261,7 +268,7 @@ constexpr Clause kIoClauses[] = {
          "firmware", Profiles::kFirmware, "parol6.io.estop-ends-homing"),
     from(kEnabled, Hazard::kHome, "Homing seeks while the stop is pressed.",
          [](BoardBench& board) {
-           board.spoil();
+           needs_motion_while_pressed(board);
            press(board);
            board.about("homing with the emergency stop pressed");
            begin_homing(board, 20ms);
@@ -275,7 +282,7 @@ constexpr Clause kIoClauses[] = {
          "parol6.io.estop-ignored-by-homing"),
     from(kEnabled, Hazard::kHome, "Homing ends when the stop is pressed, for good.",
          [](BoardBench& board) {
-           board.spoil();
+           needs_motion_while_pressed(board);
            begin_homing(board, 50ms);
            press(board);
            board.act(idle());
