@@ -81,7 +81,7 @@ class NodeBench final : public BusBench {
   // Time.
   /// Long enough for what waits for a tick of any rate from 200 Hz on.
   void settle();
-  /// Waits until behind the next tick; from there on the node has `rate_hz`. Of a fresh node it is
+  /// Waits until after the next tick; from then on the node has `rate_hz`. Of a fresh node it is
   /// known when that is. From `kSlow` on it is not, but ticks of loops are so far apart that the
   /// middle between two of them is; who misses it leaves the case open.
   void tick(std::uint16_t rate_hz = 0);

@@ -86,7 +86,7 @@ void expect_direct_settled(NodeBench& node, float volts, int levels) {
   node.expect_levels(levels);
 }
 
-/// The voltage at the first tick behind a reference, if it was read before the second.
+/// The voltage at the first tick after a reference, if it was read before the second.
 int first_levels(NodeBench& node, CommandId mode, float reference) {
   constexpr int kMostReads = 12;
   node.bring_to(kFree);

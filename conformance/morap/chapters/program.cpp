@@ -68,7 +68,7 @@ void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
   node.expect_same(node.read(selector, 31), before);
 }
 
-/// The new ones, which do nothing when they run, are read before and behind the next tick.
+/// New parameters, which never run, are read before and after the next tick.
 void expect_in_use_at_tick(NodeBench& node) {
   program(node, "01 2C 01 01 00 00 20 41 01 00 00 20 41 01 00 00 00 00 00 00 00 00 0C");
   node.expect_programming(kSuccess);
