@@ -253,7 +253,8 @@ class Campaign {
     if (!is_there) return give_up(is_there.error());
     if (!*is_there) {
       ++state_.unsettled;
-      state_.last_unsettled = symptom.key();
+      state_.last_unsettled =
+          sentence_of(symptom, with_question(script), material_.harmless, material_.make_dissector);
       return start_again();
     }
     Finding finding{.symptom = symptom,

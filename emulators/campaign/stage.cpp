@@ -42,36 +42,50 @@ Duration lateness_of(const Script& script, const std::vector<Instant>& passed) {
   return latest;
 }
 
-/// When a live device may have got each record, given when it left: then; when it should have left;
-/// what left within a short time, together; all a little later.
-using Guess = Script (*)(const Script& script, const std::vector<Instant>& passed);
+/// When a live device may have got each record, given when it left and what was answered: then;
+/// when it should have left; what left within a short time, together; all a little later; when the
+/// device said something next, as one that had no time reads all at once that came meanwhile.
+using Guess = Script (*)(const Script& script, const Played& played);
 
-Script as_left(const Script& script, const std::vector<Instant>& passed) {
+Script as_left(const Script& script, const Played& played) {
   auto guessed = script;
-  for (std::size_t i = 0; i < std::min(script.size(), passed.size()); ++i) {
-    guessed[i].time = std::max(script[i].time, passed[i]);
+  for (std::size_t i = 0; i < std::min(script.size(), played.passed.size()); ++i) {
+    guessed[i].time = std::max(script[i].time, played.passed[i]);
   }
   return guessed;
 }
 
-Script as_meant(const Script& script, const std::vector<Instant>& /*passed*/) { return script; }
+Script as_meant(const Script& script, const Played& /*played*/) { return script; }
 
-Script in_bundles(const Script& script, const std::vector<Instant>& passed) {
+Script in_bundles(const Script& script, const Played& played) {
   constexpr Duration kNear = 1ms;
-  auto guessed = as_left(script, passed);
+  auto guessed = as_left(script, played);
   for (std::size_t i = 1; i < guessed.size(); ++i) {
     if (guessed[i].time - guessed[i - 1].time < kNear) guessed[i].time = guessed[i - 1].time;
   }
   return guessed;
 }
 
-Script a_little_late(const Script& script, const std::vector<Instant>& passed) {
-  auto guessed = as_left(script, passed);
+Script a_little_late(const Script& script, const Played& played) {
+  auto guessed = as_left(script, played);
   for (auto& record : guessed) record.time += 1ms;
   return guessed;
 }
 
-constexpr std::array<Guess, 4> kGuesses{as_left, as_meant, in_bundles, a_little_late};
+Script as_answered(const Script& script, const Played& played) {
+  constexpr Duration kLong = 20ms;
+  auto guessed = as_left(script, played);
+  auto next = played.actual.begin();
+  for (auto& record : guessed) {
+    next = std::ranges::find_if(next, played.actual.end(),
+                                [&](const KeptRecord& said) { return said.time >= record.time; });
+    if (next == played.actual.end()) break;
+    if (next->time - record.time <= kLong) record.time = next->time;
+  }
+  return guessed;
+}
+
+constexpr std::array<Guess, 5> kGuesses{as_left, as_meant, in_bundles, a_little_late, as_answered};
 
 /// Nor does anybody know where in its tick a live device is, and what comes close together may come
 /// in one tick or in two. So there are models that began later. No multiple of the step is that of
@@ -89,9 +103,13 @@ Duration phase_of(std::size_t model) {
   return static_cast<Duration::rep>(model - kGuesses.size() + 1) * kPhaseStep;
 }
 
+Outcome<Played> in_order(Outcome<Played> played) {
+  if (played) std::ranges::stable_sort(played->actual, {}, &KeptRecord::time);
+  return played;
+}
+
 Heard heard(Outcome<Played> played) {
   if (!played) return {{}, played.error()};
-  std::ranges::stable_sort(played->actual, {}, &KeptRecord::time);
   return {std::move(played->actual), std::nullopt};
 }
 
@@ -120,20 +138,20 @@ Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
     return problem(resumed.error().code, "--target", "it cannot be watched over any more");
   }
   const auto idle = target_->port().now() - last_end_;
-  auto played = play_host(target_->port(), script, setup_.how);
+  auto played = in_order(play_host(target_->port(), script, setup_.how));
   if (!played && played.error().code == ErrorCode::kForbidden) {
     auto refused = std::move(played).error();
     if (auto why = target_->last_refusal()) refused.hint = std::move(why->reason);
     return tl::unexpected{std::move(refused)};
   }
-  const auto passed = played ? played->passed : std::vector<Instant>{};
-  BothHeard both{heard(std::move(played)), {}, lateness_of(script, passed)};
+  const auto known = played.value_or(Played{});
+  BothHeard both{heard(std::move(played)), {}, lateness_of(script, known.passed)};
   last_end_ = target_->port().now();
   for (std::size_t i = 0; i < models_.size(); ++i) {
     auto& model = models_[i].port();
     if (idle > Duration{}) rest(model, idle);
-    const auto guessed = setup_.is_emulated ? script : guess_of(i)(script, passed);
-    both.models.push_back(heard(play_host(model, guessed, setup_.how)));
+    const auto guessed = setup_.is_emulated ? script : guess_of(i)(script, known);
+    both.models.push_back(heard(in_order(play_host(model, guessed, setup_.how))));
   }
   return both;
 }

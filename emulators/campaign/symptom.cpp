@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <iterator>
 #include <memory>
 #include <set>
@@ -99,26 +100,26 @@ class Judge {
                     .time = last});
   }
 
-  [[nodiscard]] std::optional<Symptom> of_difference(const Heard& target,
-                                                     const Heard& model) const {
+  /// The first that differs from all models.
+  [[nodiscard]] std::optional<Symptom> first_difference(const BothHeard& heard) const {
     std::optional<Symptom> first;
-    each_difference(target, model, [&](Symptom symptom, const RecordingDifference& difference) {
-      std::tie(symptom.expected, symptom.actual) = sides_of(difference, symptom.parts);
-      first = std::move(symptom);
+    each_difference(heard, [&](const Difference& one) {
+      first = one.symptom;
+      std::tie(first->expected, first->actual) = sides_of(one.difference, first->parts);
       return false;
     });
     return first;
   }
 
-  [[nodiscard]] std::set<std::string> ways(const Heard& target, const Heard& model) const {
+  [[nodiscard]] std::set<std::string> ways(const BothHeard& heard) const {
     std::set<std::string> all;
     const auto done = all_done();
-    each_difference(target, model, [&](Symptom symptom, const RecordingDifference&) {
+    each_difference(heard, [&](Difference one) {
       // It may have been any of what was done before: an answer can come late.
       for (const auto& [time, words] : done) {
-        if (time > symptom.time) break;
-        symptom.asked = words;
-        for (auto& way : symptom.ways()) all.insert(std::move(way));
+        if (time > one.symptom.time) break;
+        one.symptom.asked = words;
+        for (auto& way : one.symptom.ways()) all.insert(std::move(way));
       }
       return true;
     });
@@ -126,12 +127,19 @@ class Judge {
   }
 
  private:
-  /// Where nobody knows exactly when the target got something: the model comes past that.
+  /// Where nobody knows exactly when the target got something: apart from what is no news, the
+  /// model comes past that.
   [[nodiscard]] bool is_only_early_or_late(const RecordingDifference& difference,
-                                           const RecordedMessages& before) const {
+                                           const Symptom& symptom,
+                                           const RecordedMessages& model) const {
     if (judging_.rules.time_tolerance == Duration{}) return false;
-    return Likeness{judging_.rules}.is_come_past_by(*difference.after,
-                                                    before.lanes().at(difference.lane));
+    auto rules = judging_.rules;
+    for (auto& part : parts_of(difference)) {
+      if (std::ranges::find(symptom.parts, part) != symptom.parts.end()) continue;
+      rules.fields.push_back(
+          {.message = symptom.answer, .name = std::move(part), .is_ignored = true});
+    }
+    return Likeness{rules}.is_come_past_by(*difference.after, model.lanes().at(difference.lane));
   }
 
   [[nodiscard]] std::vector<std::pair<Instant, std::string>> all_done() const {
@@ -143,16 +151,43 @@ class Judge {
     return all;
   }
 
-  /// In order of time, as long as `goes_on(symptom, difference)` says so.
+  struct Difference {
+    Symptom symptom;
+    RecordingDifference difference;
+  };
+
+  /// What no model explains, in order of time, as long as `goes_on(difference)` says so. Each
+  /// moment of a live target may have been as any model had it, whichever had the moment before:
+  /// what came close together came in one tick here and in two there. So it is asked of each
+  /// message, not of all of them together, whether a model says the same.
   template <class GoesOn>
-  void each_difference(const Heard& target, const Heard& model, GoesOn goes_on) const {
-    const auto before = messages_of(model.said, judging_.make_dissector);
-    const auto after = messages_of(target.said, judging_.make_dissector);
+  void each_difference(const BothHeard& heard, GoesOn goes_on) const {
+    const auto target = messages_of(heard.target.said, judging_.make_dissector);
+    std::optional<RecordedMessages> first;  // whose messages the differences refer to
+    std::vector<Difference> common;
+    for (const auto& model : heard.models) {
+      auto said = messages_of(model.said, judging_.make_dissector);
+      auto found = differences(said, target);
+      if (!first) {
+        first = std::move(said);
+        common = std::move(found);
+      } else {
+        std::erase_if(common, [&](Difference& one) { return !is_among(one, found); });
+      }
+      if (common.empty()) return;
+    }
+    for (auto& one : common) {
+      if (!goes_on(std::move(one))) return;
+    }
+  }
+
+  [[nodiscard]] std::vector<Difference> differences(const RecordedMessages& model,
+                                                    const RecordedMessages& target) const {
+    std::vector<Difference> all;
     const auto end = script_.empty() ? Instant{} : script_.back().time;
-    for (const auto& difference : diff(before, after, judging_.rules, aligning_)) {
+    for (auto& difference : diff(model, target, judging_.rules, aligning_)) {
       const bool is_one_sided = difference.change != Change::kChanged;
       if (is_one_sided && difference.time() > end + judging_.horizon) continue;
-      if (!is_one_sided && is_only_early_or_late(difference, before)) continue;
       const auto& message = difference.before != nullptr ? *difference.before : *difference.after;
       auto symptom =
           excused({.asked = asked_before(script_, difference.time(), judging_.make_dissector),
@@ -161,8 +196,31 @@ class Judge {
                    .expected = {},
                    .actual = {},
                    .time = difference.time()});
-      if (symptom && !goes_on(*std::move(symptom), difference)) return;
+      if (!symptom) continue;
+      if (!is_one_sided && is_only_early_or_late(difference, *symptom, model)) continue;
+      all.push_back({*std::move(symptom), std::move(difference)});
     }
+    return all;
+  }
+
+  /// Whether another model differs there, too: from the same message of the target, or by one of
+  /// the same kind that the target lacks. Only what is wrong by both stays wrong.
+  [[nodiscard]] bool is_among(Difference& one, const std::vector<Difference>& others) const {
+    const auto other = std::ranges::find_if(others, [&](const Difference& some) {
+      if (one.difference.after != some.difference.after) return false;
+      if (one.difference.after != nullptr) return true;
+      return one.difference.lane == some.difference.lane &&
+             one.symptom.answer == some.symptom.answer &&
+             std::chrono::abs(one.symptom.time - some.symptom.time) <=
+                 2 * judging_.rules.time_tolerance;
+    });
+    if (other == others.end()) return false;
+    std::vector<std::string> both;
+    std::ranges::copy_if(one.symptom.parts, std::back_inserter(both), [&](const auto& part) {
+      return std::ranges::find(other->symptom.parts, part) != other->symptom.parts.end();
+    });
+    if (!both.empty()) one.symptom.parts = std::move(both);
+    return true;
   }
 
   /// The symptom without what is no news; none if nothing is left.
@@ -225,13 +283,7 @@ std::optional<Symptom> symptom_of(const Script& script, const BothHeard& heard,
                                   const Judging& judging, const Excuses& excuses) {
   const Judge judge{script, judging, excuses, excuses};
   if (heard.target.end) return judge.of_end(heard);
-  std::optional<Symptom> latest;
-  for (const auto& model : heard.models) {
-    auto symptom = judge.of_difference(heard.target, model);
-    if (!symptom) return std::nullopt;
-    if (!latest || latest->time < symptom->time) latest = std::move(symptom);
-  }
-  return latest;
+  return judge.first_difference(heard);
 }
 
 std::vector<std::string> all_ways(const Script& script, const BothHeard& heard,
@@ -242,14 +294,8 @@ std::vector<std::string> all_ways(const Script& script, const BothHeard& heard,
     const auto symptom = judge.of_end(heard);
     return symptom ? symptom->ways() : std::vector<std::string>{};
   }
-  std::optional<std::set<std::string>> common;
-  for (const auto& model : heard.models) {
-    auto ways = judge.ways(heard.target, model);
-    if (common) std::erase_if(ways, [&](const auto& way) { return !common->contains(way); });
-    common = std::move(ways);
-  }
-  if (!common) return {};
-  return {common->begin(), common->end()};
+  const auto ways = judge.ways(heard);
+  return {ways.begin(), ways.end()};
 }
 
 }  // namespace armjig::campaign

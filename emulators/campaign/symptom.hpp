@@ -57,11 +57,11 @@ struct Judging {
 };
 
 /// The first moment at which what the target said is wrong and not excused: its link ended and that
-/// of no model did, or it differs from all models. None: all is well.
+/// of no model did, or a message is there, or missing, that no model explains. None: all is well.
 [[nodiscard]] std::optional<Symptom> symptom_of(const Script& script, const BothHeard& heard,
                                                 const Judging& judging, const Excuses& excuses);
 
-/// All that differs from all models, as `Symptom::ways`, sorted. `found` is what was found before:
+/// All that no model explains, as `Symptom::ways`, sorted. `found` is what was found before:
 /// it is told, too, as far as `excuses` does not have it.
 [[nodiscard]] std::vector<std::string> all_ways(const Script& script, const BothHeard& heard,
                                                 const Judging& judging, const Excuses& excuses,

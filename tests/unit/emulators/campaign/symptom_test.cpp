@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/symptom.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "cli/device.hpp"
+#include "cli/devices/devices.hpp"
+#include "harness/wire/parol6/frame.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Said {
+  Duration time;
+  std::int32_t speed;
+  std::uint8_t object = 0;
+};
+
+/// What a board says of its last joint's speed and of its gripper.
+Heard board(std::initializer_list<Said> all) {
+  Heard heard;
+  for (const auto& said : all) {
+    parol6::TelemetryFrame frame;
+    frame.speed.back() = StepsPerSecond{said.speed};
+    frame.gripper.object_detection = said.object;
+    const auto bytes = parol6::encode(frame);
+    heard.said.push_back({.time = Instant{said.time},
+                          .kind = LinkKind::kStream,
+                          .direction = Direction::kFromDevice,
+                          .bytes = {bytes.begin(), bytes.end()}});
+  }
+  return heard;
+}
+
+std::optional<Symptom> judge(const BothHeard& heard, Duration tolerance = 4ms,
+                             const Excuses& excuses = {}) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  Judging judging{.make_dissector = device.make_dissector, .rules = {}, .horizon = 20ms};
+  judging.rules.time_tolerance = tolerance;
+  const Script script{{.time = Instant{1s}, .kind = LinkKind::kStream}};
+  return symptom_of(script, heard, judging, excuses);
+}
+
+/// Two frames came in one tick here and in two there; then two more, the other way round.
+const auto kApart = board({{10ms, 1}, {20ms, 2}, {30ms, 3}, {40ms, 4}});
+const auto kTogether = board({{10ms, 1}, {20ms, 1}, {30ms, 3}, {40ms, 3}});
+
+TEST(Symptom, IsNoneWhereEachMomentIsAsSomeModelHadIt) {
+  EXPECT_FALSE(judge({board({{10ms, 1}, {20ms, 2}, {30ms, 3}, {40ms, 3}}), {kApart, kTogether}}));
+  EXPECT_FALSE(judge({board({{10ms, 1}, {20ms, 1}, {30ms, 3}, {40ms, 4}}), {kApart, kTogether}}));
+}
+
+TEST(Symptom, IsWhatNoModelSaysAtThatMoment) {
+  const auto changed =
+      judge({board({{10ms, 1}, {20ms, 2}, {30ms, 7}, {40ms, 4}}), {kApart, kTogether}});
+  ASSERT_TRUE(changed);
+  EXPECT_EQ(changed->parts, std::vector<std::string>{"speed.j6"});
+  EXPECT_EQ(changed->time, Instant{30ms});
+  EXPECT_TRUE(judge({board({{10ms, 1}, {30ms, 3}, {40ms, 4}}), {kApart, kTogether}}));
+  EXPECT_TRUE(judge({board({}), {kApart, kTogether}}));
+  EXPECT_TRUE(
+      judge({board({{10ms, 1}, {20ms, 2}, {25ms, 9}, {30ms, 3}, {40ms, 4}}), {kApart, kTogether}}));
+}
+
+/// What was wrong from the beginning does not make what follows wrong.
+TEST(Symptom, IsNoneWhereAModelComesPastApartFromWhatIsNoNews) {
+  Excuses excuses;
+  excuses.add({}, "telemetry", "gripper.object");
+  const BothHeard early{board({{10ms, 1}, {20ms, 3}, {30ms, 4}}),
+                        {board({{10ms, 1, 1}, {20ms, 2, 1}, {30ms, 4, 1}})}};
+  EXPECT_FALSE(judge(early, 12ms, excuses));
+  EXPECT_TRUE(judge(early, 4ms, excuses));
+  const BothHeard wrong{board({{10ms, 1}, {20ms, 7}, {30ms, 4}}),
+                        {board({{10ms, 1, 1}, {20ms, 2, 1}, {30ms, 4, 1}})}};
+  EXPECT_TRUE(judge(wrong, 12ms, excuses));
+}
+
+}  // namespace
+}  // namespace armjig::campaign
