@@ -22,20 +22,21 @@ std::optional<std::string> difference_in(const CampaignState& state) {
 }  // namespace
 
 PlaySessions sessions_beside(const Device& device, const Target& target, const Device& reference,
-                             std::size_t most_attempts) {
+                             const BesideHow& beside) {
   RigOptions how;
   how.target = target;
   RigOptions model;
   model.target = sound_target(target.options);
-  return [&device, &reference, how, model, most_attempts](
+  return [&device, &reference, how, model, beside](
              std::uint64_t seed, std::uint64_t count) -> Outcome<std::optional<std::string>> {
-    const auto material = material_of(reference, how, model, kLongestEmulated);
+    auto material = material_of(reference, how, model, kLongestEmulated);
     if (!material) return tl::unexpected{material.error()};
+    material->has_hands = beside.has_hands;
     const auto stage = stage_of(device, how, reference, model, {}, kHorizon);
     const CampaignOptions options{.seed = seed,
                                   .most_cases = count,
                                   .judging = {device.make_dissector, {}, kHorizon},
-                                  .most_attempts = most_attempts,
+                                  .most_attempts = beside.most_attempts,
                                   .most_shrinking = Duration::max(),
                                   .stops_at_first = true};
     CampaignState state;

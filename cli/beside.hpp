@@ -8,14 +8,17 @@
 
 namespace armjig::cli {
 
-/// By then what was found is as short as it becomes. No clock has a part in it.
-inline constexpr std::size_t kMostAttempts = 500;
+struct BesideHow {
+  /// What differs is made shorter, with so many attempts at most: by then it is as short as it
+  /// becomes. No clock has a part in it.
+  std::size_t most_attempts = 500;
+  /// What is beside the link is done, too, so that not all of a session is bytes.
+  bool has_hands = true;
+};
 
 /// Plays sessions to a new emulated device like `target` and, beside it, to one of `reference` that
-/// has no fault, in virtual time: nothing may differ. All three outlive it. What differs is made
-/// shorter, with so many attempts at most.
+/// has no fault, in virtual time: nothing may differ. All three outlive it.
 [[nodiscard]] PlaySessions sessions_beside(const Device& device, const Target& target,
-                                           const Device& reference,
-                                           std::size_t most_attempts = kMostAttempts);
+                                           const Device& reference, const BesideHow& beside = {});
 
 }  // namespace armjig::cli

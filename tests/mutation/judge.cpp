@@ -85,8 +85,8 @@ Outcome<std::string> told_apart_by(const cli::Device& device,
 
 /// Nobody reads what they differ in, so it is not made shorter.
 PlaySessions sessions_as_they_are(const cli::Device& device, const Target& target,
-                                  const cli::Device& own) {
-  return cli::sessions_beside(device, target, own, /*most_attempts=*/0);
+                                  const cli::Device& own, bool has_hands) {
+  return cli::sessions_beside(device, target, own, {.most_attempts = 0, .has_hands = has_hands});
 }
 
 /// What the suite says: the first case that fails, or how many passed.
@@ -95,7 +95,7 @@ std::string judgement(const cli::Device& device, const cli::Device& own, const T
                       Tier tier) {
   const auto bench = cli::open_bench(device, {.target = target});
   if (!bench) return "killed: the start, " + describe(bench.error());
-  (*bench)->know_sessions(sessions_as_they_are(device, target, own));
+  (*bench)->know_sessions(sessions_as_they_are(device, target, own, /*has_hands=*/true));
   RunOptions run;
   run.selection.tier = tier;
   run.stops_at_first_failure = true;
@@ -125,7 +125,8 @@ Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Tar
 void judge_on_wire(const cli::Device& device, const cli::Device& own, const Target& target,
                    std::uint64_t count) {
   constexpr std::uint64_t kSeed = 1;
-  const auto difference = sessions_as_they_are(device, target, own)(kSeed, count);
+  const auto difference =
+      sessions_as_they_are(device, target, own, /*has_hands=*/false)(kSeed, count);
   fmt::print("{}\n", difference ? difference->value_or("same") : describe(difference.error()));
 }
 

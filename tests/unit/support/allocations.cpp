@@ -10,13 +10,13 @@
 namespace armjig::test {
 namespace {
 
-std::atomic<std::uint64_t> count{0};
+std::atomic<std::uint64_t> taken{0};
 std::atomic<std::size_t> in_use{0};
 
 void* take(std::size_t size) noexcept {
   void* place = std::malloc(size);
   if (place == nullptr) return nullptr;
-  ++count;
+  ++taken;
   in_use += malloc_usable_size(place);
   return place;
 }
@@ -25,7 +25,7 @@ void* take_aligned(std::size_t size, std::align_val_t alignment) noexcept {
   const auto unit = static_cast<std::size_t>(alignment);
   void* place = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
   if (place == nullptr) return nullptr;
-  ++count;
+  ++taken;
   in_use += malloc_usable_size(place);
   return place;
 }
@@ -38,7 +38,7 @@ void give_back(void* place) noexcept {
 
 }  // namespace
 
-std::uint64_t allocations() noexcept { return count; }
+std::uint64_t allocations() noexcept { return taken; }
 std::size_t bytes_in_use() noexcept { return in_use; }
 
 }  // namespace armjig::test
