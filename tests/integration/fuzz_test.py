@@ -89,7 +89,7 @@ class Fuzz(unittest.TestCase):
         self.addCleanup(emulator.terminate)
         emulator.stdout.readline()
         # It differs from the beginning, and nobody can start it again.
-        out = self.fuzz("--target", f"pty:{link}", "--allow", "state", "--known", KNOWN, "--cases", "1", code=0)
+        out = self.fuzz("--target", f"pty:{link}", "--allow", "state", "--known", KNOWN, "--cases", "3", code=0)
         self.assertRegex(out, "nothing is said of telemetry: .*gripper.object 0")
 
     def learn(self, device, *arguments, code):
