@@ -33,12 +33,13 @@ PlaySessions sessions_beside(const Device& device, const Target& target, const D
     if (!material) return tl::unexpected{material.error()};
     material->has_hands = beside.has_hands;
     const auto stage = stage_of(device, how, reference, model, {}, kHorizon);
-    const CampaignOptions options{.seed = seed,
-                                  .most_cases = count,
-                                  .judging = {device.make_dissector, {}, kHorizon},
-                                  .most_attempts = beside.most_attempts,
-                                  .most_shrinking = Duration::max(),
-                                  .stops_at_first = true};
+    const CampaignOptions options{
+        .seed = seed,
+        .most_cases = count,
+        .judging = {device.make_dissector, {.time_tolerance = beside.tolerance}, kHorizon},
+        .most_attempts = beside.most_attempts,
+        .most_shrinking = Duration::max(),
+        .stops_at_first = true};
     CampaignState state;
     if (const auto done = run_campaign(*stage, *material, options, state, {}); !done) {
       return tl::unexpected{done.error()};

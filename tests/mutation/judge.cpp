@@ -11,7 +11,8 @@
 //   mutation_judge wire DEVICE OBJECT TARGET SESSIONS
 //
 // tells whether so many sessions that consist of nothing but bytes on a link, in virtual time, tell
-// it from the emulator of this program. Prints what they differ in, or "same".
+// it from the emulator of this program. Prints what they differ in, or "same"; then that again
+// where moments count that are more than 5 ms apart.
 //
 //   mutation_judge serve DEVICE OBJECT ARGUMENT...
 //
@@ -20,6 +21,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -40,6 +42,8 @@
 
 namespace armjig::mutation {
 namespace {
+
+using namespace std::chrono_literals;
 
 constexpr int kWrongUsage = 2;
 
@@ -85,8 +89,8 @@ Outcome<std::string> told_apart_by(const cli::Device& device,
 
 /// Nobody reads what they differ in, so it is not made shorter.
 PlaySessions sessions_as_they_are(const cli::Device& device, const Target& target,
-                                  const cli::Device& own, bool has_hands) {
-  return cli::sessions_beside(device, target, own, {.most_attempts = 0, .has_hands = has_hands});
+                                  const cli::Device& own) {
+  return cli::sessions_beside(device, target, own, {.most_attempts = 0});
 }
 
 /// What the suite says: the first case that fails, or how many passed.
@@ -95,7 +99,7 @@ std::string judgement(const cli::Device& device, const cli::Device& own, const T
                       Tier tier) {
   const auto bench = cli::open_bench(device, {.target = target});
   if (!bench) return "killed: the start, " + describe(bench.error());
-  (*bench)->know_sessions(sessions_as_they_are(device, target, own, /*has_hands=*/true));
+  (*bench)->know_sessions(sessions_as_they_are(device, target, own));
   RunOptions run;
   run.selection.tier = tier;
   run.stops_at_first_failure = true;
@@ -121,13 +125,19 @@ Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Tar
   return {};
 }
 
-/// What sessions on a link would show of it; one that cannot be opened shows that.
+/// What sessions on a link would show of it, exactly and apart from moments that a link hides; one
+/// that cannot be opened shows that.
 void judge_on_wire(const cli::Device& device, const cli::Device& own, const Target& target,
                    std::uint64_t count) {
   constexpr std::uint64_t kSeed = 1;
-  const auto difference =
-      sessions_as_they_are(device, target, own, /*has_hands=*/false)(kSeed, count);
-  fmt::print("{}\n", difference ? difference->value_or("same") : describe(difference.error()));
+  constexpr Duration kMoment = 5ms;
+  for (const auto tolerance : {Duration{}, kMoment}) {
+    const auto play = cli::sessions_beside(
+        device, target, own, {.most_attempts = 0, .has_hands = false, .tolerance = tolerance});
+    const auto difference = play(kSeed, count);
+    fmt::print("{}\n", difference ? difference->value_or("same") : describe(difference.error()));
+    std::fflush(stdout);
+  }
 }
 
 int serve(const cli::Device& device, char* program, std::span<char*> arguments) {
