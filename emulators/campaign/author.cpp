@@ -516,7 +516,8 @@ void Author::fit(Dice& dice, Script& script) const {
     const auto works = material_.works_on != nullptr && is_sent(before)
                            ? material_.works_on(before.bytes)
                            : Duration{};
-    const auto missing = std::max(material_.least_gap, works) - (script[i].time - before.time);
+    const auto least = is_end(script[i]) ? material_.least_gap_to_end : material_.least_gap;
+    const auto missing = std::max(least, works) - (script[i].time - before.time);
     if (missing > Duration{}) shift_from(script, i, missing);
   }
   // Most are short, for what takes long is rare, and time is dear.

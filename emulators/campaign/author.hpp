@@ -30,6 +30,8 @@ struct Material {
   bool has_operations = true;  ///< of a bus: transactions may have any form
   Duration longest{};          ///< of a script
   Duration least_gap{};        ///< between two things that are done
+  /// Before a connection ends, where nobody can tell whether what is answered comes before that.
+  Duration least_gap_to_end{};
   /// How long the device works on a message after it, if what comes meanwhile is another thing than
   /// what comes later; nullptr: that may be tried.
   Duration (*works_on)(Bytes message){};

@@ -110,7 +110,11 @@ Script joined(Script script, const Script& more, Duration pause) {
   return script;
 }
 
-Script with_ends(Script script) {
+bool is_end(const KeptRecord& record) {
+  return record.kind == LinkKind::kEvents && event_of(record) == "disconnect";
+}
+
+Script with_ends(Script script, Duration pause) {
   std::set<std::int64_t> open;
   for (const auto& record : script) {
     if (record.kind == LinkKind::kSession) open.insert(record.id);
@@ -120,7 +124,7 @@ Script with_ends(Script script) {
     if (event == "connect") open.insert(id);
     if (event == "disconnect" && text_in(record, "text") != "client-half-close") open.erase(id);
   }
-  const auto end = Instant{length_of(script)};
+  const auto end = Instant{length_of(script) + pause};
   for (const auto id : open) {
     script.push_back(
         {.time = end,

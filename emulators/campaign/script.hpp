@@ -28,8 +28,11 @@ using Script = std::vector<KeptRecord>;
 /// `more` after `script`, `pause` later.
 [[nodiscard]] Script joined(Script script, const Script& more, Duration pause);
 
-/// The script with an end to each connection that it leaves open.
-[[nodiscard]] Script with_ends(Script script);
+/// Whether it ends a connection, or the half of it.
+[[nodiscard]] bool is_end(const KeptRecord& record);
+
+/// The script with an end to each connection that it leaves open, `pause` later.
+[[nodiscard]] Script with_ends(Script script, Duration pause);
 
 /// Bytes that go to the device, as opposed to what is read or done beside the link.
 [[nodiscard]] bool is_sent(const KeptRecord& record) noexcept;

@@ -189,6 +189,25 @@ TEST(Campaign, LeavesANodeTheTicksThatItNeedsForParameters) {
   EXPECT_GT(followed, 100U);
 }
 
+TEST(Campaign, LeavesAServerTheTimeToAnswerBeforeAClientLeaves) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  auto material = cli::material_of(device, emulated(""), emulated(""), 6s).value();
+  material.least_gap_to_end = 100ms;
+  const Author author{material};
+  std::size_t ends = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto script = with_ends(author.draw(seed, {}), material.least_gap_to_end);
+    Instant said{};
+    for (const auto& record : script) {
+      if (is_sent(record)) said = record.time;
+      if (!is_end(record)) continue;
+      ++ends;
+      EXPECT_GE(record.time - said, 100ms);
+    }
+  }
+  EXPECT_GT(ends, 50U);
+}
+
 /// A sound device that becomes another one for good, and that nobody can start again.
 class ChangingStage final : public Stage {
  public:
