@@ -18,6 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using campaign::Material;
 using campaign::Script;
+using campaign::Spacing;
 
 /// The connection that the harmless question has for itself.
 constexpr std::uint32_t kOwnConnection = 99;
@@ -25,12 +26,12 @@ constexpr std::uint32_t kOwnConnection = 99;
 /// How long what is asked harmlessly may take.
 constexpr Duration kPauseAfterQuestion = 20ms;
 
-/// What is closer together may come in one piece or in two, and nobody knows which.
-constexpr Duration kLeastGapLive = 3ms;
-
-/// A client that leaves sooner may or may not have its answer, and a server that answers one who
-/// has gone may be another thing after it than one that answered in time.
-constexpr Duration kLeastGapToEndLive = 100ms;
+/// On a link in real time, what is closer together may come in one piece or in two, and nobody
+/// knows which. A client that leaves at once may or may not have its answer, and a server that
+/// answers one who has gone may be another thing after it than one that answered in time.
+Spacing spacing_live(const Device& device) {
+  return {.least = 3ms, .around_ends = 100ms, .works_on = device.fuzz.works_on};
+}
 
 KeptRecord border(std::string_view dir, std::string_view how, Instant time) {
   return {.time = time,
@@ -171,19 +172,16 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
         using Kind = std::remove_cvref_t<decltype(kind)>;
         auto rig = open_fresh(wiring_of(device, kind), model);
         if (!rig) return tl::unexpected{rig.error()};
-        Material material{
-            .kind = link_of<Kind>(),
-            .make_dissector = device.make_dissector,
-            .draw_session = device.draw_session,
-            .harmless = {},
-            .seal = device.fuzz.seal,
-            .addresses = addresses_on(rig->port()),
-            .has_hands = how.target.is_emulated(),
-            .has_operations = how.target.is_emulated(),
-            .longest = longest,
-            .least_gap = how.target.is_emulated() ? Duration{} : kLeastGapLive,
-            .least_gap_to_end = how.target.is_emulated() ? Duration{} : kLeastGapToEndLive,
-            .works_on = how.target.is_emulated() ? nullptr : device.fuzz.works_on};
+        Material material{.kind = link_of<Kind>(),
+                          .make_dissector = device.make_dissector,
+                          .draw_session = device.draw_session,
+                          .harmless = {},
+                          .seal = device.fuzz.seal,
+                          .addresses = addresses_on(rig->port()),
+                          .has_hands = how.target.is_emulated(),
+                          .has_operations = how.target.is_emulated(),
+                          .longest = longest,
+                          .spacing = how.target.is_emulated() ? Spacing{} : spacing_live(device)};
         auto probe = kind.make_probe(rig->port(), model.target.text);
         if (!probe) return tl::unexpected{probe.error()};
         const auto request = (*probe)->request();

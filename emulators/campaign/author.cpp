@@ -76,14 +76,6 @@ std::size_t end_of_exchange(const Script& script, std::size_t place) {
   return is_followed ? place + 1 : place;
 }
 
-/// From a place on everything is later, or earlier as far as nothing overtakes.
-void shift_from(Script& script, std::size_t place, Duration by) {
-  if (place >= script.size()) return;
-  const auto before = place == 0 ? Instant{} : script[place - 1].time;
-  const auto shift = std::max(by, before - script[place].time);
-  for (auto i = place; i < script.size(); ++i) script[i].time += shift;
-}
-
 /// So many copies of what is from `first` to `last` after it, each `pause` after the one before;
 /// what follows is later by as much. `change` may change each record of them.
 template <class Change>
@@ -511,15 +503,7 @@ void Author::fit(Dice& dice, Script& script) const {
   });
   const auto begin = script.empty() ? Instant{} : script.front().time;
   for (auto& record : script) record.time -= begin.time_since_epoch();
-  for (std::size_t i = 1; i < script.size(); ++i) {
-    const auto& before = script[i - 1];
-    const auto works = material_.works_on != nullptr && is_sent(before)
-                           ? material_.works_on(before.bytes)
-                           : Duration{};
-    const auto least = is_end(script[i]) ? material_.least_gap_to_end : material_.least_gap;
-    const auto missing = std::max(least, works) - (script[i].time - before.time);
-    if (missing > Duration{}) shift_from(script, i, missing);
-  }
+  script = spaced(std::move(script), material_.spacing);
   // Most are short, for what takes long is rare, and time is dear.
   constexpr auto kShortPart = 8;
   constexpr auto kMiddlePart = 3;

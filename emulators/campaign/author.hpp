@@ -29,12 +29,7 @@ struct Material {
   bool has_hands = false;      ///< what is beside the link can be done
   bool has_operations = true;  ///< of a bus: transactions may have any form
   Duration longest{};          ///< of a script
-  Duration least_gap{};        ///< between two things that are done
-  /// Before a connection ends, where nobody can tell whether what is answered comes before that.
-  Duration least_gap_to_end{};
-  /// How long the device works on a message after it, if what comes meanwhile is another thing than
-  /// what comes later; nullptr: that may be tried.
-  Duration (*works_on)(Bytes message){};
+  Spacing spacing{};
 };
 
 /// Writes scripts: sessions of the device drawn at random, and what is made of those that showed

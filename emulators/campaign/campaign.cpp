@@ -164,7 +164,7 @@ class Campaign {
   }
 
   [[nodiscard]] Script with_question(const Script& script) const {
-    return joined(with_ends(script, material_.least_gap_to_end), material_.harmless, kPause);
+    return joined(spaced(with_ends(script), material_.spacing), material_.harmless, kPause);
   }
 
   [[nodiscard]] Outcome<Seen> see(const Script& script) {

@@ -114,7 +114,7 @@ bool is_end(const KeptRecord& record) {
   return record.kind == LinkKind::kEvents && event_of(record) == "disconnect";
 }
 
-Script with_ends(Script script, Duration pause) {
+Script with_ends(Script script) {
   std::set<std::int64_t> open;
   for (const auto& record : script) {
     if (record.kind == LinkKind::kSession) open.insert(record.id);
@@ -124,13 +124,34 @@ Script with_ends(Script script, Duration pause) {
     if (event == "connect") open.insert(id);
     if (event == "disconnect" && text_in(record, "text") != "client-half-close") open.erase(id);
   }
-  const auto end = Instant{length_of(script) + pause};
+  const auto end = Instant{length_of(script)};
   for (const auto id : open) {
     script.push_back(
         {.time = end,
          .kind = LinkKind::kEvents,
          .direction = Direction::kToDevice,
          .details = fmt::format(R"("dir":"disconnect","conn":{},"text":"client-close")", id)});
+  }
+  return script;
+}
+
+void shift_from(Script& script, std::size_t place, Duration by) {
+  if (place >= script.size()) return;
+  const auto before = place == 0 ? Instant{} : script[place - 1].time;
+  const auto shift = std::max(by, before - script[place].time);
+  for (auto i = place; i < script.size(); ++i) script[i].time += shift;
+}
+
+Script spaced(Script script, const Spacing& spacing) {
+  const auto least_between = [&spacing](const KeptRecord& one, const KeptRecord& next) {
+    const bool has_work = spacing.works_on != nullptr && is_sent(one);
+    return std::max({spacing.least, has_work ? spacing.works_on(one.bytes) : Duration{},
+                     is_end(one) || is_end(next) ? spacing.around_ends : Duration{}});
+  };
+  for (std::size_t i = 1; i < script.size(); ++i) {
+    const auto missing =
+        least_between(script[i - 1], script[i]) - (script[i].time - script[i - 1].time);
+    if (missing > Duration{}) shift_from(script, i, missing);
   }
   return script;
 }

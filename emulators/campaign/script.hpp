@@ -31,8 +31,24 @@ using Script = std::vector<KeptRecord>;
 /// Whether it ends a connection, or the half of it.
 [[nodiscard]] bool is_end(const KeptRecord& record);
 
-/// The script with an end to each connection that it leaves open, `pause` later.
-[[nodiscard]] Script with_ends(Script script, Duration pause);
+/// The script with an end to each connection that it leaves open.
+[[nodiscard]] Script with_ends(Script script);
+
+/// How far apart things are done at least where nobody can tell what a device makes of two that are
+/// closer together.
+struct Spacing {
+  Duration least{};        ///< between any two
+  Duration around_ends{};  ///< before a connection ends, and after it
+  /// After a message, as long as the device works on it if what comes meanwhile is another thing
+  /// than what comes later; nullptr: no longer.
+  Duration (*works_on)(Bytes message){};
+};
+
+/// The script with that much time between its records, or as much as it has, if that is more.
+[[nodiscard]] Script spaced(Script script, const Spacing& spacing);
+
+/// From `place` on everything is later, or earlier as far as nothing overtakes.
+void shift_from(Script& script, std::size_t place, Duration by);
 
 /// Bytes that go to the device, as opposed to what is read or done beside the link.
 [[nodiscard]] bool is_sent(const KeptRecord& record) noexcept;

@@ -174,7 +174,7 @@ TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
 TEST(Campaign, LeavesANodeTheTicksThatItNeedsForParameters) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
   auto material = cli::material_of(device, emulated(""), emulated(""), 6s).value();
-  material.works_on = device.fuzz.works_on;
+  material.spacing.works_on = device.fuzz.works_on;
   Author author{material};
   std::size_t followed = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -192,11 +192,11 @@ TEST(Campaign, LeavesANodeTheTicksThatItNeedsForParameters) {
 TEST(Campaign, LeavesAServerTheTimeToAnswerBeforeAClientLeaves) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
   auto material = cli::material_of(device, emulated(""), emulated(""), 6s).value();
-  material.least_gap_to_end = 100ms;
+  material.spacing.around_ends = 100ms;
   const Author author{material};
   std::size_t ends = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const auto script = with_ends(author.draw(seed, {}), material.least_gap_to_end);
+    const auto script = spaced(with_ends(author.draw(seed, {})), material.spacing);
     Instant said{};
     for (const auto& record : script) {
       if (is_sent(record)) said = record.time;
@@ -206,6 +206,29 @@ TEST(Campaign, LeavesAServerTheTimeToAnswerBeforeAClientLeaves) {
     }
   }
   EXPECT_GT(ends, 50U);
+}
+
+TEST(Campaign, KeepsTheTimeBeforeAnEndWhenItMakesAFindingShort) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  const auto faulty = emulated("?fault=missing:Accepted");
+  auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
+  material.spacing.around_ends = 100ms;
+  const auto stage = cli::stage_of(device, faulty, device, emulated(""), Hand{}, 20ms);
+  CampaignState state;
+  const CampaignOptions options{
+      .most_cases = 10, .judging = {device.make_dissector, {}, 20ms}, .most_shrinking = 1h};
+  ASSERT_TRUE(run_campaign(*stage, material, options, state, {}));
+  ASSERT_FALSE(state.findings.empty());
+  bool is_any_shorter = false;
+  for (const auto& finding : state.findings) {
+    is_any_shorter |= finding.size < finding.found_size;
+    const auto own = finding.script.size() - material.harmless.size();
+    for (std::size_t i = 1; i < own; ++i) {
+      if (!is_end(finding.script[i])) continue;
+      EXPECT_GE(finding.script[i].time - finding.script[i - 1].time, 100ms);
+    }
+  }
+  EXPECT_TRUE(is_any_shorter);
 }
 
 /// A sound device that becomes another one for good, and that nobody can start again.
