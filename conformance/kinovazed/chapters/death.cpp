@@ -279,7 +279,7 @@ constexpr Clause kDeathClauses[] = {
          "GetObjectivePosition outside the same limits, in the frame of the objective, ends "
          "the process.",
          "server; reference 5.3", Profiles::kFirmware, "kinovazed.death.no-objective-position"),
-    dies("The connection ends.", on<ends<ask_position>>),
+    quick(dies("The connection ends.", on<ends<ask_position>>)),
 
     must("kinovazed.death.position-edges",
          "The position that GetObjectivePosition asks for lies in the frame of the objective, by "
@@ -328,12 +328,12 @@ constexpr Clause kDeathClauses[] = {
     must("kinovazed.death.accept-reset",
          "A client that resets while it waits ends the process when its turn comes.",
          "server; reference 1.7", Profiles::kFirmware, "kinovazed.death.no-accept-reset"),
-    dies("The next connection is refused.",
-         [](ServerBench& server) {
-           reset_waiting(server);
-           server.expect_true(!server.is_served(), "a process that has ended",
-                              "a client that is served");
-         }),
+    quick(dies("The next connection is refused.",
+               [](ServerBench& server) {
+                 reset_waiting(server);
+                 server.expect_true(!server.is_served(), "a process that has ended",
+                                    "a client that is served");
+               })),
 
     should("kinovazed.death.no-accept-reset", "A client that resets while it waits does no harm.",
            "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.accept-reset"),
@@ -347,7 +347,7 @@ constexpr Clause kDeathClauses[] = {
          "A write that fails while another message waits behind it mutes the server for good: "
          "Freeze and a reset do.",
          "server, transcript S11", Profiles::kFirmware, "kinovazed.death.no-mute"),
-    dies("The next client hears nothing.", on<hangs<reset_at_freeze>>),
+    quick(dies("The next client hears nothing.", on<hangs<reset_at_freeze>>)),
 
     should("kinovazed.death.no-mute", "Freeze and a reset do no harm.",
            "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mute"),

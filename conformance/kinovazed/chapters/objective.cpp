@@ -127,7 +127,7 @@ constexpr Clause kObjectiveClauses[] = {
 
     must("kinovazed.objective.handle", "Handle runs and is done.",
          "document; server, recording objectives-absolute"),
-    in(kIdle, "ObjectiveDone, and beat 21.", on<runs<Objective::kHandle>>),
+    quick(in(kIdle, "ObjectiveDone, and beat 21.", on<runs<Objective::kHandle>>)),
 
     must("kinovazed.objective.suck-door", "SuckDoor runs and is done.",
          "document; server, recording objectives-absolute"),
@@ -180,7 +180,8 @@ constexpr Clause kObjectiveClauses[] = {
 
     must("kinovazed.objective.all-points", "Every way-point of an objective is visited, in order.",
          "server; reference 9.2"),
-    in(kIdle, "A second Antenna takes more than 1.3 s.", on<all_points<Objective::kAntenna>>),
+    quick(
+        in(kIdle, "A second Antenna takes more than 1.3 s.", on<all_points<Objective::kAntenna>>)),
 
     must("kinovazed.objective.all-points-of-bottles",
          "Both way-points of FindBottle and of PlaceBottle are visited.", "server; reference 9.3",
@@ -224,11 +225,11 @@ constexpr Clause kObjectiveClauses[] = {
 
     must("kinovazed.objective.hijack", "SetActiveObjective replaces the objective that runs.",
          "server, transcript S14", Profiles::kFirmware, "kinovazed.objective.no-hijack"),
-    in(kIdle, "Behind Handle the arm is not at its end.",
-       [](ServerBench& server) {
-         server.about("the way back behind a run that was replaced");
-         expect_time(server, detour(server, kHijack), kDetour, ServerBench::kMotionTime);
-       }),
+    quick(in(kIdle, "Behind Handle the arm is not at its end.",
+             [](ServerBench& server) {
+               server.about("the way back behind a run that was replaced");
+               expect_time(server, detour(server, kHijack), kDetour, ServerBench::kMotionTime);
+             })),
 
     must("kinovazed.objective.no-hijack",
          "SetActiveObjective leaves the objective that runs alone.",
