@@ -231,11 +231,9 @@ Outcome<void> Folder::keep(const Finding& finding) const {
 }
 
 Outcome<void> Folder::keep_worthy(const Script& script, std::uint64_t case_number) const {
-  // What was said is not needed, but a bus has transactions in no other place.
-  const auto is_bus =
-      std::ranges::any_of(script, [](const KeptRecord& one) { return one.kind == LinkKind::kBus; });
+  // What the device said is not needed; transactions and connections are written as what came.
   return write(path_ / "worthy" / fmt::format("{:08}.jsonl", case_number),
-               to_recording(facts_.recording, is_bus ? Script{} : script, script));
+               to_recording(facts_.recording, {}, script));
 }
 
 CampaignState merged(std::vector<CampaignState> states) {

@@ -40,10 +40,20 @@ bool is_done_by_host(const KeptRecord& record) {
   return !text_in(record, "text").starts_with("device-") && event_of(record) != "note";
 }
 
-/// A read that says how much is wanted, and nothing of what came.
-KeptRecord without_answer(KeptRecord record) {
+/// Without the time as its recording wrote it, which would be written again whatever the record's
+/// own becomes.
+std::string without_time(std::string details) {
+  if (!details.starts_with(R"("t_ms":)")) return details;
+  const auto end = details.find(',');
+  return end == std::string::npos ? std::string{} : details.substr(end + 1);
+}
+
+/// What the host does in it: of a read how much is wanted, and nothing of what came.
+KeptRecord as_done(KeptRecord record) {
   record.time =
       Instant{std::chrono::floor<std::chrono::microseconds>(record.time.time_since_epoch())};
+  record.details = without_time(std::move(record.details));
+  if (record.kind == LinkKind::kEvents) record.direction = Direction::kToDevice;
   if (record.kind != LinkKind::kBus) return record;
   const bool goes_on = record.details.find(R"("stop":false)") != std::string::npos;
   const bool is_read = record.direction == Direction::kFromDevice;
@@ -88,7 +98,7 @@ Outcome<Script> read_script(std::string_view recording, const std::string& where
   Script script;
   const auto read = for_each_record(**reader, [&](const CaptureRecord& record) -> Outcome<void> {
     auto kept = KeptRecord::from(record);
-    if (is_done_by_host(kept)) script.push_back(without_answer(std::move(kept)));
+    if (is_done_by_host(kept)) script.push_back(as_done(std::move(kept)));
     return {};
   });
   if (!read) return tl::unexpected{read.error()};

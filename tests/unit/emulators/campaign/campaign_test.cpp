@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "cli/device.hpp"
 #include "cli/devices/devices.hpp"
 #include "cli/fuzz_material.hpp"
+#include "emulators/campaign/folder.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -229,6 +231,37 @@ TEST(Campaign, KeepsTheTimeBeforeAnEndWhenItMakesAFindingShort) {
     }
   }
   EXPECT_TRUE(is_any_shorter);
+}
+
+/// The scripts of an interrupted campaign, as it goes on with them.
+std::vector<Script> kept_in_a_folder(const std::string& device,
+                                     const std::vector<Script>& scripts) {
+  const auto path = std::filesystem::path{testing::TempDir()} / ("kept-" + device);
+  std::filesystem::remove_all(path);
+  const auto folder = Folder::open(path.string(), {.recording = {device, "emulated:", "a test"}});
+  std::uint64_t number = 0;
+  for (const auto& script : scripts) {
+    EXPECT_TRUE(folder->keep_worthy(script, number++));
+  }
+  EXPECT_TRUE(folder->keep(CampaignState{}));
+  auto state = folder->load();
+  EXPECT_TRUE(state) << state.error().hint;
+  std::filesystem::remove_all(path);
+  return state->worthy;
+}
+
+TEST(Campaign, GoesOnWithTheVeryScriptsThatItKept) {
+  for (const auto* const name : {"parol6", "kinovazed", "morap"}) {
+    const auto& device = **cli::find_device(cli::shipped_devices(), name);
+    const auto material = cli::material_of(device, emulated(""), emulated(""), 6s).value();
+    const Author author{material};
+    std::vector<Script> scripts;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      auto script = author.draw(seed, scripts);
+      if (!script.empty()) scripts.push_back(std::move(script));
+    }
+    EXPECT_TRUE(kept_in_a_folder(name, scripts) == scripts) << name;
+  }
 }
 
 /// A sound device that becomes another one for good, and that nobody can start again.
