@@ -124,6 +124,15 @@ void begin_homing(BoardBench& board, Duration time) {
   board.keep_asking(idle(), time);
 }
 
+void home_by_idling(BoardBench& board) {
+  constexpr Duration kWholeRun = std::chrono::seconds{90};
+  board.act(with_code(Command::kHome));
+  const auto is_done = [](const Answer& answer) { return is_homed(answer); };
+  if (!board.ask_until(idle(), is_done, kWholeRun)) {
+    board.fail("all joints homed", "not within 90 s");
+  }
+}
+
 std::array<Steps, kJointCount> beside(const TelemetryFrame& answer, std::size_t joint, int steps) {
   auto positions = answer.position;
   positions[joint].value += steps;

@@ -57,6 +57,10 @@ void expect_reported(BoardBench& board, const Answer& answer, const Speeds& spee
 /// near its standby position.
 void begin_homing(BoardBench& board, Duration time);
 
+/// Homes an arm wherever it is, with one home command and idle frames; a finding if it takes more
+/// than 90 s.
+void home_by_idling(BoardBench& board);
+
 /// All joints where they are in `answer`, but one further by `steps`.
 [[nodiscard]] std::array<Steps, kJointCount> beside(const TelemetryFrame& answer, std::size_t joint,
                                                     int steps);

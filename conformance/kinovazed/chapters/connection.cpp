@@ -38,7 +38,8 @@ constexpr Clause kConnectionClauses[] = {
            server.pause(400ms);
            connect_anew(server);
            const auto after = server.await_beat();
-           expect_time(server, after.time - before.time, 900ms, 1200ms);
+           expect_time(server, after.time - before.time, 900ms - server.noise(),
+                       1200ms + server.noise());
          }),
 
     must("kinovazed.connection.one",

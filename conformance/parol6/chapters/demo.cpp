@@ -262,6 +262,9 @@ constexpr Clause kDemoClauses[] = {
            run_back(board);
            board.about("code 69 after the end of a demonstration");
            expect_still(board, with_code(kDemo), 500ms);
+           board.keep_asking(jog(0, 500), 300ms);
+           board.about("code 69 after the end of a demonstration and a jog");
+           expect_still(board, with_code(kDemo), 500ms);
            board.act(idle());
            board.about("code 69 after the end of a demonstration and idle");
            expect_moved(board, run(board, with_code(kDemo), 500ms));

@@ -25,6 +25,11 @@ Answer beyond_range(BoardBench& board) {
   return answer;
 }
 
+/// Of an idle frame, of both signs and all lengths.
+constexpr Speeds kIdleSpeeds{1, -1, 255, -256, 40'000, -49'999};
+/// By then the end of homing has been taken note of (parol6.home.idle-after).
+constexpr Duration kDropped = 100ms;
+
 constexpr GripperSetPoint kElsewhere{.speed = 77, .id = 5};
 
 constexpr double kClockError = 0.02;  // the board runs from an RC oscillator: 1 %, and a margin
@@ -381,16 +386,23 @@ constexpr Clause kTelemetryClauses[] = {
          "parol6.telemetry.idle-reports-zero"),
     look("Speeds of idle frames come back, joint by joint.",
          [](BoardBench& board) {
-           constexpr Speeds kSpeeds{1, -1, 255, -256, 40'000, -49'999};
            for (std::size_t turn = 0; turn < kJointCount; ++turn) {
              Speeds speeds{};
              for (std::size_t j = 0; j < kJointCount; ++j)
-               speeds[j] = kSpeeds[(j + turn) % kJointCount];
+               speeds[j] = kIdleSpeeds[(j + turn) % kJointCount];
              board.act(with_speeds(255, speeds));
              expect_reported(board, board.ask(with_speeds(255, speeds)), speeds);
            }
            board.act(idle());
          }),
+    variant("after-homing", full(from(kEnabled, Hazard::kHome, "They come back after homing, too.",
+                                      [](BoardBench& board) {
+                                        home_by_idling(board);
+                                        const auto frame = with_speeds(255, kIdleSpeeds);
+                                        board.keep_asking(frame, kDropped);
+                                        expect_reported(board, board.ask(frame), kIdleSpeeds);
+                                        board.act(idle());
+                                      }))),
 
     must("parol6.telemetry.idle-reports-zero",
          "While the board idles telemetry reports speed 0, whatever speeds the frame has.",
@@ -398,7 +410,7 @@ constexpr Clause kTelemetryClauses[] = {
          "parol6.telemetry.idle-speed"),
     look("Speeds of idle frames do not come back.",
          [](BoardBench& board) {
-           board.act(with_speeds(255, {1, -1, 255, -256, 40'000, -49'999}));
+           board.act(with_speeds(255, kIdleSpeeds));
            expect_reported(board, board.ask(idle()), {});
          }),
 
