@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "conformance/parol6/laws.hpp"
+#include "harness/wire/parol6/readings.hpp"
 
 namespace armjig::parol6::conformance {
 namespace {
