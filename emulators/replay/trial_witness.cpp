@@ -24,7 +24,9 @@ void TrialWitness::on_connection(const ConnectionEvent& event) {
     look_at(event.time, event.connection, Direction::kToDevice, event.bytes);
   } else if (event.kind == What::kFromServer) {
     look_at(event.time, event.connection, Direction::kFromDevice, event.bytes);
-  } else if (event.kind == What::kDropped) {
+  } else if (event.kind != What::kDropped) {
+    note_who_stays(event);
+  } else if (!left_.contains(event.connection)) {
     broken_.push_back({event.time, "device", "it ends the connection"});
   }
   if (judge_ != nullptr) judge_->on_connection(event);
@@ -48,6 +50,15 @@ void TrialWitness::wait_until(Instant time) {
 
 void TrialWitness::overlook(Instant from, Instant to) {
   if (judge_ != nullptr) judge_->overlook(from, to);
+}
+
+// A server answers the end of its client with its own, sooner or later.
+void TrialWitness::note_who_stays(const ConnectionEvent& event) {
+  if (event.kind == ConnectionEvent::Kind::kBegun) {
+    left_.erase(event.connection);
+  } else {
+    left_.insert(event.connection);
+  }
 }
 
 void TrialWitness::look_at(Instant time, std::uint32_t lane, Direction direction, Bytes bytes) {

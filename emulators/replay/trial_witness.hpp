@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <utility>
 
 #include "emulators/replay/what_if.hpp"
@@ -9,7 +10,7 @@
 namespace armjig {
 
 /// Tells a judge what passes, and keeps what the device says. Bytes of it that are no message, and
-/// a connection that it ends, break `device`.
+/// a connection that it ends before its client does, break `device`.
 class TrialWitness final : public Overhearer {
  public:
   /// `judge` may be nullptr. It has to outlive this.
@@ -28,11 +29,13 @@ class TrialWitness final : public Overhearer {
   [[nodiscard]] std::size_t said() const noexcept { return said_.size(); }
 
  private:
+  void note_who_stays(const ConnectionEvent& event);
   void look_at(Instant time, std::uint32_t lane, Direction direction, Bytes bytes);
 
   MakeDissector make_dissector_;
   TrialJudge* judge_;
   std::map<std::uint32_t, std::unique_ptr<Dissector>> dissectors_;
+  std::set<ConnectionId> left_;  ///< connections whose client said its last
   std::vector<Message> messages_;
   std::vector<SaidPiece> said_;
   std::vector<Breakage> broken_;

@@ -227,7 +227,7 @@ constexpr Clause kObjectiveClauses[] = {
          "server, transcript S14", Profiles::kFirmware, "kinovazed.objective.no-hijack"),
     quick(in(kIdle, "Behind Handle the arm is not at its end.",
              [](ServerBench& server) {
-               server.about("the way back behind a run that was replaced");
+               server.about("the way back after a run that was replaced");
                expect_time(server, detour(server, kHijack), kDetour, ServerBench::kMotionTime);
              })),
 
@@ -236,7 +236,7 @@ constexpr Clause kObjectiveClauses[] = {
          "document: how-to; our reading", Profiles::kDocumented, "kinovazed.objective.hijack"),
     in(kIdle, "Behind Handle the arm is at its end.",
        [](ServerBench& server) {
-         server.about("the way back behind a run that was left alone");
+         server.about("the way back after a run that was left alone");
          expect_time(server, detour(server, kHijack), -kDetour, kDetour);
        }),
 

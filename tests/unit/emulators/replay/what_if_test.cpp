@@ -6,6 +6,7 @@
 
 #include <array>
 #include <chrono>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "emulators/replay/recorded_talk.hpp"
+#include "emulators/replay/trial_witness.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/wire/demo/demo.hpp"
 #include "tests/unit/support/devices.hpp"
@@ -164,6 +166,27 @@ Trial trial_of(const RecordedTalk& talk) {
   return [&talk](const std::vector<Perturbation>& wanted) -> Outcome<TrialResult> {
     return talk(wanted);
   };
+}
+
+std::vector<Breakage> witnessed(std::initializer_list<ConnectionEvent::Kind> events) {
+  TrialWitness witness{demo::make_dissector, nullptr};
+  auto now = at(0s);
+  for (const auto kind : events) {
+    witness.on_connection({now, 1, kind, {}});
+    now += 1ms;
+  }
+  return witness.finish();
+}
+
+TEST(TrialWitness, TakesTheEndOfAConnectionForBrokenUnlessItsClientEndedItFirst) {
+  using Kind = ConnectionEvent::Kind;
+  EXPECT_THAT(witnessed({Kind::kBegun, Kind::kDropped}),
+              testing::ElementsAre(testing::Field(&Breakage::rule, "device")));
+  for (const auto end : {Kind::kHalfClosed, Kind::kClosed, Kind::kReset}) {
+    EXPECT_THAT(witnessed({Kind::kBegun, end, Kind::kDropped}), testing::IsEmpty());
+    EXPECT_THAT(witnessed({Kind::kBegun, end, Kind::kDropped, Kind::kBegun, Kind::kDropped}),
+                testing::SizeIs(1));
+  }
 }
 
 TEST(WhatIf, FindsTheOneLostMessageAfterWhichItRunsOn) {
