@@ -16,7 +16,7 @@ Duration Bench::link_noise() const noexcept { return link_ ? std::min(heard_, *l
 void Bench::begin(Profile profile, std::uint64_t seed) {
   profile_ = profile;
   judgement_ = {};
-  is_over_ = false;
+  is_over_ = is_race_ = false;
   about_.clear();
   random_.seed(static_cast<std::uint32_t>(seed ^ (seed >> 32U)));
   forget_exchange();
@@ -86,6 +86,7 @@ void Bench::decide(Judgement judgement) {
   if (is_over_) return;
   is_over_ = true;
   judgement_ = std::move(judgement);
+  if (is_race_ && judgement_.verdict == Verdict::kFail) judgement_.is_timing = true;
 }
 
 }  // namespace armjig

@@ -130,6 +130,9 @@ class Bench {
   /// The same of a moment or a pace: tried again before it counts, where time is real.
   void expect_in_time(const InBounds& measured, std::string_view wanted,
                       std::string_view otherwise);
+  /// From here on things have to come within moments of each other: what is found is about that, as
+  /// with `expect_in_time`.
+  void begin_race() noexcept { is_race_ = true; }
   /// In so many sessions drawn at random it does what a reference beside it does. Skips the case
   /// where there is none.
   void expect_as_reference(std::uint64_t sessions);
@@ -160,6 +163,7 @@ class Bench {
   Hand hand_;
   PlaySessions play_sessions_;
   bool is_over_ = false;
+  bool is_race_ = false;
   double room_{};  ///< from the margin to its bound, as a share of the way between the bounds
   std::mt19937 random_;
 };

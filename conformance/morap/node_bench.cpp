@@ -156,7 +156,7 @@ void NodeBench::settle() { pause(12ms + noise()); }
 
 void NodeBench::tick(std::uint16_t rate_hz) {
   if (is_deaf()) return;
-  if (!is_slow_ && subject_.is_real) return skip("needs time to stand still at its ticks");
+  if (!is_slow_ && !subject_.is_exact) return skip("needs time to stand still at its ticks");
   const auto before = tick_period(rate_hz_);
   // When a node idles that nobody has switched on, its next tick comes within a period.
   if (is_slow_ && rate_hz_ == kIdleRateHz) next_tick_ = now() + before;

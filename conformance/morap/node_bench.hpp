@@ -34,6 +34,8 @@ class NodeBench final : public BusBench {
     BusAddress address;
     const Motor* motor = nullptr;  ///< none: it is found out, if it is a known one
     bool is_real = false;          ///< the first of its bus that answers; its shaft turns
+    bool is_exact = false;         ///< time is virtual, and nothing on the bus takes longer than it
+                                   ///< must
   };
   NodeBench(Rig<BusPort> rig, const Subject& subject);
 

@@ -54,6 +54,7 @@ void ask_position(ServerBench& server) {
 void break_retract(ServerBench& server) {
   server.spoil();
   if (server.noise() > 10ms) server.leave_open("this server is too slow to be hit in that moment");
+  server.begin_race();
   server.touch("arm.fail.status_read", -1);
   server.say("Retract");
   server.pause(150ms);
@@ -62,6 +63,7 @@ void break_retract(ServerBench& server) {
 
 void break_mode_release(ServerBench& server) {
   server.spoil();
+  server.begin_race();
   server.touch("arm.fail.joystick_release", -1);
   server.say("SetJoystickMode:XYZ");
   server.pause(150ms + 3 * server.noise());
@@ -83,6 +85,7 @@ void reset_waiting(ServerBench& server) {
 
 void reset_at_freeze(ServerBench& server) {
   server.spoil();
+  server.begin_race();
   server.send("Freeze\r\nUnfreeze\r\n");
   server.throw_away();
   server.as(1);

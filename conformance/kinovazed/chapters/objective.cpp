@@ -33,7 +33,7 @@ void all_points(ServerBench& server) {
   expect_time(server, time_of(server, to_string(objective)), 1300ms, 2 * ServerBench::kMotionTime);
 }
 
-/// How much longer the way back to Handle is behind Handle than it should be.
+/// How much longer the way back to Handle is after Handle than it should be.
 Duration detour(ServerBench& server, std::string_view meanwhile) {
   run(server, "Handle");
   const auto usual = time_of(server, "Handle");
@@ -95,6 +95,7 @@ void points(ServerBench& server) {
 void expect_current(ServerBench& server, const Place& place, const Place& target) {
   auto away = place;
   away[0] += 0.2;
+  server.begin_race();
   for (const double side : {-1.0, 1.0}) {
     visit(server, place);
     server.say("RunObjective:Current");
@@ -194,7 +195,7 @@ constexpr Clause kObjectiveClauses[] = {
     must("kinovazed.objective.stops-there",
          "The arm is stopped where its last way-point counts as reached.", "server; reference 9.2"),
     /// An arm that goes on is 0.05 m further away when the next objective comes later.
-    in(kIdle, "SuckDoor takes as long right behind Home as 3 s later.",
+    in(kIdle, "SuckDoor takes as long right after Home as 3 s later.",
        [](ServerBench& server) {
          run(server, "SuckDoor");
          run(server, "Home");
@@ -225,7 +226,7 @@ constexpr Clause kObjectiveClauses[] = {
 
     must("kinovazed.objective.hijack", "SetActiveObjective replaces the objective that runs.",
          "server, transcript S14", Profiles::kFirmware, "kinovazed.objective.no-hijack"),
-    quick(in(kIdle, "Behind Handle the arm is not at its end.",
+    quick(in(kIdle, "After Handle the arm is not at its end.",
              [](ServerBench& server) {
                server.about("the way back after a run that was replaced");
                expect_time(server, detour(server, kHijack), kDetour, ServerBench::kMotionTime);
@@ -234,7 +235,7 @@ constexpr Clause kObjectiveClauses[] = {
     must("kinovazed.objective.no-hijack",
          "SetActiveObjective leaves the objective that runs alone.",
          "document: how-to; our reading", Profiles::kDocumented, "kinovazed.objective.hijack"),
-    in(kIdle, "Behind Handle the arm is at its end.",
+    in(kIdle, "After Handle the arm is at its end.",
        [](ServerBench& server) {
          server.about("the way back after a run that was left alone");
          expect_time(server, detour(server, kHijack), -kDetour, kDetour);

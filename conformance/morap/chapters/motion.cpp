@@ -37,18 +37,27 @@ double per_second(double angle, Duration time) {
   return angle / std::chrono::duration<double>{time}.count();
 }
 
-/// The least and the largest current of a start, which is over in some milliseconds.
-std::pair<float, float> start_currents(NodeBench& node, float volts) {
+struct StartCurrents {
+  float least = 0.0F;
+  float largest = 0.0F;
+  bool is_seen = false;  ///< the first one was read before the start was over
+};
+
+/// Of a start, which is over in some milliseconds.
+StartCurrents start_currents(NodeBench& node, float volts) {
   constexpr int kMostReads = 60;
+  constexpr auto kStart = 10ms;
   node.send(kVoltage, volts);
-  const auto deadline = node.now() + 30ms;
-  std::pair currents{0.0F, 0.0F};
-  for (int i = 0; i < kMostReads && (i == 0 || node.now() < deadline); ++i) {
+  const auto begin = node.now();
+  StartCurrents seen;
+  for (int i = 0; i < kMostReads && (i == 0 || node.now() < begin + 30ms); ++i) {
     const float amperes = node.number(kReadCurrent);
-    currents = {std::min(currents.first, amperes), std::max(currents.second, amperes)};
+    if (i == 0) seen.is_seen = node.now() - begin < kStart;
+    seen.least = std::min(seen.least, amperes);
+    seen.largest = std::max(seen.largest, amperes);
     node.pause(500us);
   }
-  return currents;
+  return seen;
 }
 
 void drive_and_let_go(NodeBench& node) {
@@ -168,13 +177,17 @@ constexpr Clause kMotionClauses[] = {
     moving("-1.5 V.",
            [](NodeBench& node) {
              const int tries = node.noise() > Duration{} ? 5 : 1;
-             float most = 0.0F;
-             for (int i = 0; i < tries && most <= 0.02F; ++i) {
-               const auto [least, largest] = start_currents(node, i % 2 == 0 ? -1.5F : 1.5F);
-               node.expect_true(least >= 0.0F, "no negative current", fmt::format("{} A", least));
-               most = largest;
+             StartCurrents seen;
+             for (int i = 0; i < tries && seen.largest <= 0.02F; ++i) {
+               seen = start_currents(node, i % 2 == 0 ? -1.5F : 1.5F);
+               node.expect_true(seen.least >= 0.0F, "no negative current",
+                                fmt::format("{} A", seen.least));
              }
-             node.expect_true(most > 0.02F, "a positive current", fmt::format("{} A", most));
+             if (seen.largest <= 0.02F && !seen.is_seen) {
+               node.leave_open("this bus is too slow to be read while a shaft starts");
+             }
+             node.expect_true(seen.largest > 0.02F, "a positive current",
+                              fmt::format("{} A", seen.largest));
              node.send(kDisable);
            }),
 

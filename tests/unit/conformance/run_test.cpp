@@ -104,6 +104,12 @@ void answers_in_time(Bench& bench) {
   device.ran.emplace_back(is_late ? "late" : "in time");
   device.expect_in_time({is_late ? 700.0 : 120.0, 0, 500, "ms"}, "0 to 500 ms", "another time");
 }
+/// A moment decides what it hears.
+void races(Bench& bench) {
+  auto& device = number(bench);
+  device.begin_race();
+  device.expect_true(device.late_answers-- <= 0, "a word", "another one");
+}
 void dies(Bench& bench) {
   number(bench).is_dead = true;
   bench.fail_by_silence("an answer", "silence");
@@ -161,14 +167,20 @@ const Chapter kChapters[] = {{"Numbers",
                               {std::begin(kCases), std::end(kCases)}}};
 const Suite kSuite{"n", "7", kChapters, kStarts};
 
-constexpr Requirement kPrompt[] = {{"n.prompt", Level::kMust, "It is prompt.", "here"}};
-constexpr Case kPromptCases[] = {{.requirement = "n.prompt", .rule = "r", .run = answers_in_time}};
+constexpr Requirement kPrompt[] = {{"n.prompt", Level::kMust, "It is prompt.", "here"},
+                                   {"n.race", Level::kMust, "It is first.", "here"}};
+constexpr Case kPromptCases[] = {
+    {.requirement = "n.prompt", .rule = "r", .run = answers_in_time},
+    {.requirement = "n.race", .rule = "r", .run = races, .hazard = Hazard::kCrash}};
 const Chapter kPromptChapters[] = {{"Moments",
                                     {std::begin(kPrompt), std::end(kPrompt)},
                                     {std::begin(kPromptCases), std::end(kPromptCases)}}};
 const Suite kPromptSuite{"n", "7", kPromptChapters, kStarts};
 
-Report run_prompt(NumberBench& bench, const RunOptions& options = {}) {
+Report run_prompt(NumberBench& bench, RunOptions options = {},
+                  const std::string& filter = "n.prompt") {
+  options.selection.filter = filter;
+  options.permissions = Permissions::all();
   return run_suite(kPromptSuite, bench, options, [](const ReportRow&) {});
 }
 
@@ -335,6 +347,42 @@ TEST(ConformanceRun, LeavesOpenWhatAnEmulatedDeviceOnSuchALinkMissesAsWell) {
   const auto report = run_prompt(bench, beside(1));
   ASSERT_THAT(verdicts(report), ElementsAre("n.prompt inconclusive"));
   EXPECT_THAT(report.rows.front().actual, HasSubstr("an emulated device on such a link"));
+}
+
+TEST(ConformanceRun, TriesAnEmulatedDeviceAsOftenAsTheOneThatIsAccused) {
+  NumberBench bench;
+  bench.late_answers = 2;
+  RunOptions options;
+  options.reference = [opened = 0]() mutable {
+    auto sound = std::make_shared<NumberBench>();
+    sound->late_answers = ++opened == 3 ? 1 : 0;  // the first one is for the noise
+    return sound;
+  };
+  EXPECT_THAT(verdicts(run_prompt(bench, options)), ElementsAre("n.prompt inconclusive"));
+}
+
+TEST(ConformanceRun, LeavesOpenWhateverAnEmulatedDeviceOnSuchALinkFails) {
+  const auto on_a_link = [](const std::string& filter) {
+    NumberBench bench;
+    const auto report = run(bench, filter, beside(0));
+    return verdicts(report);
+  };
+  EXPECT_THAT(on_a_link("n.fail"), ElementsAre("n.fail inconclusive"));
+  NumberBench broken;
+  broken.obeys_firmware = false;
+  EXPECT_THAT(verdicts(run(broken, "n.firmware", beside(0))), ElementsAre("n.firmware fail"));
+}
+
+TEST(ConformanceRun, TakesWhatAMomentDecidesForAMomentThatWasMissed) {
+  NumberBench lucky;
+  lucky.late_answers = 1;
+  EXPECT_THAT(verdicts(run_prompt(lucky, beside(0), "n.race")), ElementsAre("n.race pass"));
+  NumberBench late;
+  late.late_answers = 2;
+  EXPECT_THAT(verdicts(run_prompt(late, beside(1), "n.race")), ElementsAre("n.race inconclusive"));
+  NumberBench other;
+  other.late_answers = 2;
+  EXPECT_THAT(verdicts(run_prompt(other, beside(0), "n.race")), ElementsAre("n.race fail"));
 }
 
 TEST(ConformanceRun, SaysHowNearToItsBoundsAPassWas) {

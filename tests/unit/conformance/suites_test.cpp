@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "cli/reference.hpp"
 #include "conformance/parol6/suite.hpp"
 #include "conformance/run.hpp"
 #include "conformance/selection.hpp"
 #include "conformance/suite.hpp"
+#include "harness/link/impairment.hpp"
 #include "tests/unit/support/suites.hpp"
 
 namespace armjig {
@@ -193,6 +195,35 @@ TEST(Parol6Suite, FindsTheSameInWhateverOrderItsCasesRun) {
 TEST(Parol6Suite, GivesTheSameReportForTheSameSeed) {
   const auto once = to_json(run(parol6_suite(), "emulated:", {.seed = 3}));
   EXPECT_EQ(once, to_json(run(parol6_suite(), "emulated:", {.seed = 3})));
+}
+
+/// What a sound device is accused of on a link that is bad in that way.
+std::vector<std::string> accusations(const cli::Device& device, const std::string& impairment) {
+  RigOptions how;
+  how.target = parse_target("emulated:").value();
+  how.impairment = parse_impairment(impairment).value();
+  RunOptions options;
+  options.permissions = Permissions::all();
+  options.required_share = 0;  // such a link may leave little to judge
+  options.reference = cli::reference_of(device, how, "firmware");
+  const auto bench = cli::open_bench(device, how).value();
+  const auto report = run_suite(device.suite(), *bench, options, [](const ReportRow&) {});
+  std::vector<std::string> rows;
+  for (const auto& row : report.rows) {
+    if (row.verdict == Verdict::kFail || row.verdict == Verdict::kError) {
+      rows.push_back(impairment + ": " + to_text(row));
+    }
+  }
+  return rows;
+}
+
+TEST(Suites, AccuseNoSoundDeviceOnALinkThatDelays) {
+  for (const auto& device : cli::shipped_devices()) {
+    for (const auto* law : {"delay=5ms", "delay=uniform(0ms,1ms)", "delay=uniform(0ms,20ms)",
+                            "in.delay=exponential(3ms)", "out.delay=normal(10ms,5ms)"}) {
+      EXPECT_THAT(accusations(device, law), testing::IsEmpty()) << device.name;
+    }
+  }
 }
 
 TEST(DemoSuite, PassesOnTheEmulatedDevice) {
