@@ -124,6 +124,12 @@ bool is_end(const KeptRecord& record) {
   return record.kind == LinkKind::kEvents && event_of(record) == "disconnect";
 }
 
+void leave_half_open(KeptRecord& record) {
+  if (!is_end(record) || text_in(record, "text") != "client-close") return;
+  record.details = fmt::format(R"("dir":"disconnect","conn":{},"text":"client-half-close")",
+                               number_in(record, "conn", 0));
+}
+
 Script with_ends(Script script) {
   std::set<std::int64_t> open;
   for (const auto& record : script) {

@@ -31,6 +31,9 @@ using Script = std::vector<KeptRecord>;
 /// Whether it ends a connection, or the half of it.
 [[nodiscard]] bool is_end(const KeptRecord& record);
 
+/// If it is a client that closes its connection: now that client says nothing more, and hears on.
+void leave_half_open(KeptRecord& record);
+
 /// The script with an end to each connection that it leaves open.
 [[nodiscard]] Script with_ends(Script script);
 

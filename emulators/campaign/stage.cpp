@@ -44,7 +44,9 @@ Duration lateness_of(const Script& script, const std::vector<Instant>& passed) {
 
 /// When a live device may have got each record, given when it left and what was answered: then;
 /// when it should have left; what left within a short time, together; all a little later; when the
-/// device said something next, as one that had no time reads all at once that came meanwhile.
+/// device said something next, as one that had no time reads all at once that came meanwhile. Of a
+/// client that has left, the system tells a server no more at first than that nothing comes any
+/// more.
 using Guess = Script (*)(const Script& script, const Played& played);
 
 Script as_left(const Script& script, const Played& played) {
@@ -85,7 +87,14 @@ Script as_answered(const Script& script, const Played& played) {
   return guessed;
 }
 
-constexpr std::array<Guess, 5> kGuesses{as_left, as_meant, in_bundles, a_little_late, as_answered};
+Script as_far_as_seen(const Script& script, const Played& played) {
+  auto guessed = as_left(script, played);
+  for (auto& record : guessed) leave_half_open(record);
+  return guessed;
+}
+
+constexpr std::array<Guess, 6> kGuesses{as_left,       as_meant,    in_bundles,
+                                        a_little_late, as_answered, as_far_as_seen};
 
 /// Nor does anybody know where in its tick a live device is, and what comes close together may come
 /// in one tick or in two. So there are models that began later. No multiple of the step is that of
