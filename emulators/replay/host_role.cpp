@@ -293,7 +293,10 @@ class ServerPlaying : public Playing {
       played_.actual.push_back(border(id, clock_.recorded(port->now() + offset), "connect",
                                       connected ? "ok" : "refused"));
     }
-    connections_[id] = {std::move(port), offset, connected.has_value()};
+    auto& connection = connections_[id];
+    // One that the recording did not end is left here as a client leaves, not as an operator does.
+    if (connection.port) connection.port->close();
+    connection = {std::move(port), offset, connected.has_value()};
     return {};
   }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "emulators/i2c/bus.hpp"
+#include "emulators/kinovazed/options.hpp"
 #include "emulators/memory/in_memory.hpp"
 #include "emulators/replay/device_role.hpp"
 #include "emulators/replay/host_role.hpp"
@@ -21,6 +22,8 @@
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/files/user_file.hpp"
+#include "harness/rig/guarded_ports.hpp"
+#include "harness/rig/kinovazed_judge.hpp"
 #include "harness/wire/kinovazed/dissector.hpp"
 #include "harness/wire/morap/dissector.hpp"
 #include "harness/wire/parol6/dissector.hpp"
@@ -180,6 +183,28 @@ TEST(HostRole, ShiftsWhatFollowsALateRecordIfItIsToldTo) {
   const auto own = end(AfterLate::kAsRecorded) - at(20ms);
   EXPECT_LT(own, 1ms);
   EXPECT_GE(end(AfterLate::kShifted) - at(20ms), 5 * own);
+}
+
+TEST(HostRole, LeavesAConnectionThatANewOneReplacesAsItsGuardIsTold) {
+  const auto said = [](Duration time, const std::string& text) {
+    const auto bytes = std::as_bytes(std::span{text});
+    return KeptRecord{.time = at(time),
+                      .kind = LinkKind::kSession,
+                      .direction = Direction::kToDevice,
+                      .id = 1,
+                      .bytes = {bytes.begin(), bytes.end()}};
+  };
+  const KeptRecord again{.time = at(100ms),
+                         .kind = LinkKind::kEvents,
+                         .details = R"("dir":"connect","conn":1,"text":"ok")"};
+  const std::vector<KeptRecord> records{said(10ms, "Retract\r\n"), again,
+                                        said(150ms, "GetAbsolutePosition\r\n")};
+  GuardedSource server{open_in_memory(make_hosted(*kinovazed::emulation::make({}, "test"))), kinovazed::rig::make_judge,
+                       Permissions::all(), std::make_shared<GuardState>(), WhenLeft::kSayNothing};
+  const auto played = play_host(server, records, {});
+  ASSERT_TRUE(played);
+  ASSERT_EQ(played->passed.size(), records.size());
+  EXPECT_LT(played->passed.back(), at(160ms)) << "time in which a moving arm is stopped";
 }
 
 TEST(DeviceRole, WaitsForTheHostAndThenTakesTheTimeThatItTook) {
