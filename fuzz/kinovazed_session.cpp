@@ -4,12 +4,10 @@
 //
 // Input: what falls when a session is drawn (`Roll`).
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <variant>
 
+#include "fuzz/kinovazed_possible.hpp"
 #include "fuzz/session.hpp"
-#include "harness/wire/kinovazed/state.hpp"
 
 namespace armjig::fuzz {
 namespace {
@@ -28,19 +26,7 @@ class ServerPromises {
     }
   }
 
-  void see(const Device& server, Instant /*time*/) const {
-    constexpr float kFarthest = 1.5;  // m, more than an arm is long
-    constexpr float kTurn = 6.3F;
-    require(static_cast<std::size_t>(server.state()) < kinovazed::kStateNames.size(),
-            "the server is in a state that the table has");
-    const auto pose = std::visit([](const auto& arm) { return arm.pose(); }, server.arm().plant());
-    for (const auto place : {pose.x, pose.y, pose.z}) {
-      require(std::abs(place) <= kFarthest, "the hand is where the arm reaches");
-    }
-    for (const auto angle : {pose.pitch, pose.yaw, pose.roll}) {
-      require(std::abs(angle) <= kTurn, "the hand is turned by less than a turn");
-    }
-  }
+  static void see(const Device& server, Instant /*time*/) { require_possible(server); }
 
   /// A line is answered once at most; some have no answer, and the dead give none.
   void hear(const std::vector<TraceEvent>& answers) const {

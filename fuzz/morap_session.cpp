@@ -2,11 +2,10 @@
 // Whole sessions with emulated nodes and the pen on their bus.
 //
 // Input: what falls when a session is drawn (`Roll`).
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "emulators/morap/node.hpp"
+#include "fuzz/morap_possible.hpp"
 #include "fuzz/session.hpp"
 #include "harness/wire/morap/message.hpp"
 
@@ -31,13 +30,7 @@ class BusPromises {
   }
 
   void see(Device& bus, Instant /*time*/) const {
-    for (const auto number : nodes_) {
-      auto& node = bus.device<Node>(number);
-      require(is_one_of_three(node.status()), "the motor is in a state that the table has");
-      require(is_one_of_three(node.programming_status()),
-              "programming is in a state that the table has");
-      require(std::isfinite(node.angle()), "a shaft has an angle");
-    }
+    for (const auto number : nodes_) require_possible(bus.device<Node>(number));
   }
 
   /// Each operation is one answer, and has its bytes already.
@@ -45,13 +38,6 @@ class BusPromises {
   static void take_what_it_said(Device& /*bus*/) {}
 
  private:
-  /// Both have the values 1 to 3.
-  template <class Status>
-  static bool is_one_of_three(Status status) {
-    const auto value = static_cast<unsigned>(status);
-    return value >= 1 && value <= 3;
-  }
-
   std::vector<std::size_t> nodes_;  ///< their numbers on the bus
 };
 

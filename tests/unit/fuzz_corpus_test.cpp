@@ -34,11 +34,17 @@
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_session
 #include "fuzz/kinovazed_session.cpp"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_kinovazed_steering
+#include "fuzz/kinovazed_steering.cpp"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_kinovazed_wire
 #include "fuzz/kinovazed_wire.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_morap_drive
 #include "fuzz/morap_drive.cpp"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_morap_motion
+#include "fuzz/morap_motion.cpp"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_morap_node
 #include "fuzz/morap_node.cpp"
@@ -105,8 +111,10 @@ constexpr std::array kTargets{FuzzTarget{"capture_reader", fuzz_capture_reader},
                               FuzzTarget{"kinovazed_drive", fuzz_kinovazed_drive},
                               FuzzTarget{"kinovazed_server", fuzz_kinovazed_server},
                               FuzzTarget{"kinovazed_session", fuzz_kinovazed_session},
+                              FuzzTarget{"kinovazed_steering", fuzz_kinovazed_steering},
                               FuzzTarget{"kinovazed_wire", fuzz_kinovazed_wire},
                               FuzzTarget{"morap_drive", fuzz_morap_drive},
+                              FuzzTarget{"morap_motion", fuzz_morap_motion},
                               FuzzTarget{"morap_node", fuzz_morap_node},
                               FuzzTarget{"morap_session", fuzz_morap_session},
                               FuzzTarget{"morap_wire", fuzz_morap_wire},
