@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same as a library for AFL++ (AFL_CUSTOM_MUTATOR_LIBRARY), which has no mutator to borrow:
 // what is left to the engine is one byte here. ARMJIG_FUZZED is the target's name.
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 
@@ -41,6 +42,13 @@ class AflMutator {
 }  // namespace armjig::fuzz
 
 // NOLINTBEGIN(readability-identifier-naming): the names that AFL++ calls
+// NOLINTBEGIN(bugprone-reserved-identifier): and those that targets call, whose flags this library
+// is compiled with, too. What it reaches itself is of no interest.
+extern "C" __attribute__((no_sanitize("coverage"))) void __sanitizer_cov_trace_pc_guard_init(
+    std::uint32_t* /*begin*/, std::uint32_t* /*end*/) {}
+extern "C" __attribute__((no_sanitize("coverage"))) void __sanitizer_cov_trace_pc_guard(
+    std::uint32_t* /*guard*/) {}
+// NOLINTEND(bugprone-reserved-identifier)
 extern "C" void* afl_custom_init(void* /*afl*/, unsigned int seed) {
   return std::make_unique<armjig::fuzz::AflMutator>(seed).release();
 }
