@@ -251,6 +251,11 @@ void BoardBench::spoil() {
   is_spoiled_ = is_spoiled_ || !is_over();
 }
 
+void BoardBench::spoil_memory() {
+  if (rig().is_guarded() && !hand().has("power")) miss_hand("power");
+  is_spoiled_ = is_spoiled_ || !is_over();
+}
+
 void BoardBench::power_cycle() {
   if (reach("in1", 0)) put_back_surroundings();
   touch("power", 1);
@@ -356,8 +361,8 @@ void BoardBench::home() {
   walk_to_standby();
 }
 
-/// In pieces, for the board would close any distance in 10 ms if it could. Each is counted from the
-/// one before and not from where the arm is, so that an arm that goes elsewhere is seen to stray.
+/// The board would close any distance in 10 ms if it could. Each piece is counted from the one
+/// before and not from where the arm is, so that an arm that goes elsewhere is seen to stray.
 void BoardBench::walk_to_standby() {
   constexpr int kPiece = 30;
   constexpr int kMostPieces = 10'000;

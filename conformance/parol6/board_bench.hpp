@@ -115,6 +115,11 @@ class BoardBench final : public StreamBench {
   /// one leaves traces that no command takes away. Skips the case where nobody can do that, which
   /// is also where a guard would not let it pass.
   void spoil();
+  /// The same of one that leaves a homed arm at its standby position, so that nothing but the board
+  /// has to be put back: skips it where nobody can switch that off.
+  void spoil_memory();
+  /// Leads a homed arm to its standby position, in pieces.
+  void walk_to_standby();
 
   /// Longer than two passes of any board's loop.
   static constexpr Duration kPassTime = std::chrono::milliseconds{2};
@@ -133,7 +138,6 @@ class BoardBench final : public StreamBench {
   void walk_back();
   void leave_switch();
   void home();
-  void walk_to_standby();
 
   std::vector<Answer> homing_log_;
   std::optional<std::array<Steps, kJointCount>> origin_;  ///< where `kEnabled` cases begin

@@ -240,7 +240,13 @@ class BoardJudge final : public OneStopJudge {
         if (auto refusal = refuse_when_unsafe(Hazard::kMove)) return refusal;
         return judge_go_to(frame, board.way());
       case Command::kDemo:
-        return Refusal{Hazard::kMove, "code 69 moves all joints and cannot be disabled"};
+        if (auto refusal = needs(Hazard::kMove, "the demonstration")) return refusal;
+        if (!is_arm_homed()) {
+          return Refusal{
+              Hazard::kMove,
+              "code 69 moves all joints far and cannot be disabled: it needs a homed arm"};
+        }
+        return refuse_when_unsafe(Hazard::kMove);
       case Command::kIdle:
       case Command::kDisable:
         break;

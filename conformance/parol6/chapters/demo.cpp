@@ -85,7 +85,6 @@ constexpr Speeds standby() {
 
 /// The whole demonstration, from where the joints stand.
 void expect_both_legs(BoardBench& board, const Speeds& from) {
-  board.spoil();
   std::vector<Answer> log;
   std::size_t turn = 0;
   const auto end = board.now() + 2 * kLeg;
@@ -99,6 +98,22 @@ void expect_both_legs(BoardBench& board, const Speeds& from) {
   expect_seen(board, legs, "the demonstration");
   expect_leg(board, legs.first(turn), from, kDemoOut);
   expect_leg(board, legs.subspan(turn), kDemoOut, standby());
+}
+
+/// How a homed arm sets out, and that it stands when it is told so.
+void expect_setting_out(BoardBench& board) {
+  board.spoil_memory();
+  std::vector<Answer> log;
+  for (const auto end = board.now() + 3s; board.now() < end && !board.is_over() && !board.error();
+       board.pause(kFramePeriod)) {
+    log.push_back(board.ask(with_code(kDemo)));
+  }
+  board.act(idle());
+  board.about("idle in the demonstration");
+  expect_still(board, idle(), 100ms);
+  expect_seen(board, log, "the demonstration");
+  expect_leg(board, log, standby(), kDemoOut);
+  board.walk_to_standby();
 }
 
 /// Code 69 meets a joint whose way in the demonstration is the other one: it brakes first, with the
@@ -136,46 +151,53 @@ constexpr Clause kDemoClauses[] = {
          "Code 69 drives all joints out to 6179, -22222, 49812, 0, 4059, 46075 and back to their "
          "standby positions.",
          "firmware", Profiles::kFirmware, "parol6.demo.unknown"),
-    from(kFresh, Hazard::kMove, "All joints go out and come back.",
-         [](BoardBench& board) {
-           board.spoil();
-           const auto out = run_out(board).after;
-           board.about("the first answers after the sleep");
-           for (std::size_t j = 0; j < kJointCount; ++j) {
-             board.expect_between(out, position_field(j), kDemoOut[j] - 40, kDemoOut[j] + 40);
-           }
-           run_back(board);
-         }),
+    full(from(kHomed, Hazard::kMove, "All joints go out and come back.",
+              [](BoardBench& board) {
+                board.spoil_memory();
+                const auto out = run_out(board).after;
+                board.about("the first answers after the sleep");
+                for (std::size_t j = 0; j < kJointCount; ++j) {
+                  board.expect_between(out, position_field(j), kDemoOut[j] - 40, kDemoOut[j] + 40);
+                }
+                run_back(board);
+              })),
+    variant("sets-out", from(kHomed, Hazard::kMove, "Joints set out from where homing ends.",
+                             [](BoardBench& board) { expect_setting_out(board); })),
 
     must("parol6.demo.unknown", "Code 69 has no meaning and moves nothing.",
          "document: not among its codes", Profiles::kDocumented, "parol6.demo"),
-    from(kFresh, Hazard::kMove, "No joint moves with code 69.",
+    from(kHomed, Hazard::kMove, "No joint moves with code 69.",
          [](BoardBench& board) {
-           board.spoil();
+           board.spoil_memory();
            board.about("code 69");
            expect_still(board, with_code(kDemo), 500ms);
          }),
 
     must("parol6.demo.disabled", "The demonstration also runs while disabled.",
          "firmware: not guarded by the flag", Profiles::kFirmware),
-    from(kFresh, Hazard::kMove, "Joints move with code 69 after disable.",
-         [](BoardBench& board) {
-           spoil_disabled(board);
-           board.about("code 69 while disabled");
-           expect_moved(board, run(board, with_code(kDemo), 500ms));
-         }),
+    full(from(kHomed, Hazard::kMove, "Joints move with code 69 after disable.",
+              [](BoardBench& board) {
+                board.spoil_memory();
+                board.act(with_code(kDisable));
+                board.about("code 69 while disabled");
+                expect_moved(board, run(board, with_code(kDemo), 500ms));
+                board.act(with_code(kEnable));
+                board.walk_to_standby();
+              })),
 
     must("parol6.demo.sleeps",
          "Between its two legs the board sleeps for 2 s, and answers afterwards what came "
          "meanwhile.",
          "firmware", Profiles::kFirmware),
-    from(kFresh, Hazard::kMove, "One answer between the legs takes 2 s.",
-         [](BoardBench& board) {
-           board.spoil();
-           const auto length = run_out(board).length;
-           board.expect_in_time({milliseconds(length), 1900, 2100, "ms"}, "one answer after 2 s",
-                                fmt::format("it took {} ms", length / 1ms));
-         }),
+    full(from(kHomed, Hazard::kMove, "One answer between the legs takes 2 s.",
+              [](BoardBench& board) {
+                board.spoil_memory();
+                const auto length = run_out(board).length;
+                board.expect_in_time({milliseconds(length), 1900, 2100, "ms"},
+                                     "one answer after 2 s",
+                                     fmt::format("it took {} ms", length / 1ms));
+                run_back(board);
+              })),
 
     must("parol6.demo.ramp",
          "The demonstration drives J1 with at most 6000 steps/s and 6000 steps/s^2.",
@@ -201,9 +223,15 @@ constexpr Clause kDemoClauses[] = {
          "4000, 3500, 3500, 3500 and 7500.",
          "firmware, vector S8", Profiles::kFirmware),
     full(from(kFresh, Hazard::kMove, "Five joints keep to their ramps, out and back.",
-              [](BoardBench& board) { expect_both_legs(board, {}); })),
+              [](BoardBench& board) {
+                board.spoil();
+                expect_both_legs(board, {});
+              })),
     variant("homed", full(from(kHomed, Hazard::kMove, "And so they do from where homing ends.",
-                               [](BoardBench& board) { expect_both_legs(board, standby()); }))),
+                               [](BoardBench& board) {
+                                 board.spoil_memory();
+                                 expect_both_legs(board, standby());
+                               }))),
 
     must("parol6.demo.takes-over",
          "Joints that homing leads to their final positions go on from there with the maxima and "
@@ -255,49 +283,53 @@ constexpr Clause kDemoClauses[] = {
     must("parol6.demo.once",
          "A demonstration that has ended does not begin again until an idle frame has reset it.",
          "firmware", Profiles::kFirmware),
-    from(kFresh, Hazard::kMove, "The demonstration runs again only after an idle frame.",
-         [](BoardBench& board) {
-           board.spoil();
-           run_out(board);
-           run_back(board);
-           board.about("code 69 after the end of a demonstration");
-           expect_still(board, with_code(kDemo), 500ms);
-           board.keep_asking(jog(0, 500), 300ms);
-           board.about("code 69 after the end of a demonstration and a jog");
-           expect_still(board, with_code(kDemo), 500ms);
-           board.act(idle());
-           board.about("code 69 after the end of a demonstration and idle");
-           expect_moved(board, run(board, with_code(kDemo), 500ms));
-         }),
+    full(from(kHomed, Hazard::kMove, "The demonstration runs again only after an idle frame.",
+              [](BoardBench& board) {
+                board.spoil_memory();
+                run_out(board);
+                run_back(board);
+                board.about("code 69 after the end of a demonstration");
+                expect_still(board, with_code(kDemo), 500ms);
+                board.keep_asking(jog(0, 500), 300ms);
+                board.about("code 69 after the end of a demonstration and a jog");
+                expect_still(board, with_code(kDemo), 500ms);
+                board.act(idle());
+                board.about("code 69 after the end of a demonstration and idle");
+                expect_moved(board, run(board, with_code(kDemo), 500ms));
+                board.walk_to_standby();
+              })),
 
     must("parol6.demo.interrupted",
          "Another code than idle pauses the demonstration, and 69 goes on with it.", "firmware",
          Profiles::kFirmware),
-    from(kFresh, Hazard::kMove, "The demonstration stands while code 42 is sent, and goes on.",
-         [](BoardBench& board) {
-           board.spoil();
-           board.keep_asking(with_code(kDemo), 1s);
-           board.act(with_code(42));
-           board.about("code 42 in a demonstration");
-           expect_still(board, with_code(42), 200ms);
-           const auto before = board.ask(with_code(kDemo));
-           const auto after = board.keep_asking(with_code(kDemo), 200ms);
-           board.about("code 69 again");
-           board.expect_between(after, "position.j3", before.position[2].value + 100, INT32_MAX);
-         }),
+    full(from(kHomed, Hazard::kMove, "The demonstration stands while code 42 is sent, and goes on.",
+              [](BoardBench& board) {
+                board.spoil_memory();
+                board.keep_asking(with_code(kDemo), 1s);
+                board.act(with_code(42));
+                board.about("code 42 in a demonstration");
+                expect_still(board, with_code(42), 200ms);
+                const auto before = board.ask(with_code(kDemo));
+                const auto after = board.keep_asking(with_code(kDemo), 200ms);
+                board.about("code 69 again");
+                board.expect_between(after, "position.j3", INT32_MIN,
+                                     before.position[kJ3].value - 100);
+                board.walk_to_standby();
+              })),
 
     must("parol6.demo.stopped-joints",
          "Joints that a jog of speed 0 has stopped in the demonstration stay where they are, and "
          "their leg does not end.",
          "firmware: 69 goes on with whatever the steppers have", Profiles::kFirmware),
-    from(kFresh, Hazard::kMove, "No joint moves with code 69 after a jog without speeds.",
-         [](BoardBench& board) {
-           board.spoil();
-           board.keep_asking(with_code(kDemo), 500ms);
-           board.act(jog({}));
-           board.about("code 69 after a jog without speeds in a demonstration");
-           expect_still(board, with_code(kDemo), 500ms);
-         }),
+    full(from(kHomed, Hazard::kMove, "No joint moves with code 69 after a jog without speeds.",
+              [](BoardBench& board) {
+                board.spoil_memory();
+                board.keep_asking(with_code(kDemo), 500ms);
+                board.act(jog({}));
+                board.about("code 69 after a jog without speeds in a demonstration");
+                expect_still(board, with_code(kDemo), 500ms);
+                board.walk_to_standby();
+              })),
 
     must("parol6.demo.lowers-maximum",
          "The maximum speeds of the demonstration, 6000, 4000, 3500, 3500, 3500, 7500, stay in "

@@ -147,7 +147,7 @@ constexpr Clause kReceiveClauses[] = {
          "parol6.receive.length-zero-harmless"),
     from(kFresh, Hazard::kState, "The 256th byte behind a length of 0 is the next length.",
          [](BoardBench& board) {
-           board.spoil();
+           board.spoil_memory();
            board.send(kLengthZero);
            board.about("255 bytes behind a length of 0");
            board.expect_silence(std::vector(255, std::byte{0x55}));
@@ -161,7 +161,7 @@ constexpr Clause kReceiveClauses[] = {
            "document is silent; our choice", Profiles::kDocumented, "parol6.receive.length-zero"),
     from(kFresh, Hazard::kState, "A length of 0 costs no good frame.",
          [](BoardBench& board) {
-           board.spoil();
+           board.spoil_memory();
            board.about("a good frame behind FF FF FF 00");
            board.send(kLengthZero);
            board.expect_answer(encode(idle()));

@@ -246,9 +246,10 @@ TEST(GuardedStream, AWriteThatIsRefusedWhileTheArmMovesStopsIt) {
   ASSERT_TRUE(stream->write(frame(Command::kJog)));
   line.written.clear();
   line.arriving = {telemetry(Command::kJog)};
-  ASSERT_FALSE(stream->write(frame(Command::kDemo)));
+  ASSERT_FALSE(stream->write(parol6::encode(
+      parol6::CommandFrame{.position = {Steps{100'000}}, .command = Command::kGoTo})));
   EXPECT_THAT(commands(line.written), testing::Contains(Command::kDisable));
-  EXPECT_THAT(stream->last_refusal()->reason, HasSubstr("cannot be disabled"));
+  EXPECT_THAT(stream->last_refusal()->reason, HasSubstr("j1 may go from"));
 }
 
 TEST(GuardedStream, TheDestructorStopsAnArmThatMayBeMoving) {

@@ -90,10 +90,31 @@ TEST(Parol6Judge, GoToAsksForPermissionToMove) {
   }
 }
 
-TEST(Parol6Judge, TheDemonstrationIsRefusedWhateverIsAllowed) {
+TEST(Parol6Judge, TheDemonstrationNeedsAHomedArmAndPermissionToMove) {
   const auto refusal = Court{Permissions::all()}.judge(Command::kDemo);
   ASSERT_TRUE(refusal);
   EXPECT_THAT(refusal->reason, HasSubstr("cannot be disabled"));
+  for (const auto given : {Hazard::kMove, Hazard::kHome}) {
+    Court court{allowing({given})};
+    court.answer(homed(Command::kIdle));
+    EXPECT_EQ(court.judge(Command::kDemo).has_value(), given != Hazard::kMove);
+  }
+}
+
+TEST(Parol6Judge, StopsADemonstrationWhoseEmergencyStopIsPressedOrWhichLeavesTheBounds) {
+  auto pressed = homed(Command::kDemo);
+  pressed.io = {};
+  auto beyond = homed(Command::kDemo);
+  beyond.position.back() = Steps{90'000};
+  auto further = beyond;
+  further.position.back() = Steps{90'100};
+  for (const auto& said : {std::vector{pressed}, std::vector{beyond, further}}) {
+    Court court{Permissions::all()};
+    court.answer(homed(Command::kIdle));
+    ASSERT_FALSE(court.judge(Command::kDemo));
+    for (const auto& telemetry : said) court.answer(telemetry);
+    EXPECT_TRUE(court->must_stop());
+  }
 }
 
 TEST(Parol6Judge, EveryOtherCodeIsHarmless) {
