@@ -83,8 +83,9 @@ class Hosted:
         return line.split()[1]
 
     def input(self, name):
-        """A command for the shell that returns when the device has it, which says so."""
-        return f"echo {name} 1 >{self.inputs}; read -r said <{self.answers}; true"
+        """A command for the shell that returns when the device has it, which says so, and a server its log before."""
+        return (f"echo {name} 1 >{self.inputs}; while read -r said; do case $said in *'{name} is 1') break; esac; done "
+                f"<{self.answers}; true")
 
     def script(self, command):
         path = self.folder / "restart"
