@@ -167,6 +167,7 @@ const std::vector<Step>& steps() {
         {"emulators/replay/on_port.cpp", "to an emulated device in memory"},
         {"emulators/replay/replay.cpp", "makes the lines of a recording of them"},
         {"cli/devices/morap_machine.cpp", "writes down what the port of a rig is given to play"},
+        {"fuzz/morap_motion.cpp", "a bus of its own, in memory"},
         {"fuzz/morap_node.cpp", "buses of its own, in memory"},
         {"harness/drive/morap/master.cpp", "whoever makes a master hands it a port"},
         {"harness/link/bus_port.cpp", "to an emulated device"},
