@@ -199,8 +199,9 @@ TEST(HostRole, LeavesAConnectionThatANewOneReplacesAsItsGuardIsTold) {
                          .details = R"("dir":"connect","conn":1,"text":"ok")"};
   const std::vector<KeptRecord> records{said(10ms, "Retract\r\n"), again,
                                         said(150ms, "GetAbsolutePosition\r\n")};
-  GuardedSource server{open_in_memory(make_hosted(*kinovazed::emulation::make({}, "test"))), kinovazed::rig::make_judge,
-                       Permissions::all(), std::make_shared<GuardState>(), WhenLeft::kSayNothing};
+  GuardedSource server{open_in_memory(make_hosted(*kinovazed::emulation::make({}, "test"))),
+                       kinovazed::rig::make_judge, Permissions::all(),
+                       std::make_shared<GuardState>(), WhenLeft::kSayNothing};
   const auto played = play_host(server, records, {});
   ASSERT_TRUE(played);
   ASSERT_EQ(played->passed.size(), records.size());
