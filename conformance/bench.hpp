@@ -95,7 +95,10 @@ class Bench {
   /// Whether a device whose program a case has ended or hung can be put right again.
   [[nodiscard]] virtual bool can_restart() { return true; }
 
-  /// After this process did not run for a while: what was stopped because of that may move again.
+  /// Whether the device was stopped because nothing came from this process for a while, which a
+  /// link that is held up does to it, too. It does not move any more until `resume`.
+  [[nodiscard]] virtual bool is_stopped() { return false; }
+  /// Lets it move again.
   virtual void resume() {}
 
   /// The link's own clock, virtual or real.

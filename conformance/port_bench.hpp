@@ -48,6 +48,7 @@ class PortBench : public Bench {
     return seen.value_or(0);
   }
 
+  [[nodiscard]] bool is_stopped() override { return rig_.is_unsupervised(); }
   void resume() override {
     if (const auto resumed = rig_.resume(); !resumed) this->lose_link(resumed.error());
   }

@@ -106,23 +106,28 @@ class Run {
   }
 
   void add_missed() {
-    const std::chrono::duration<double> missed = options_.missed();
+    const std::chrono::duration<double> stood = missed();
     report_.facts.emplace_back(
         "stopped", fmt::format("{:.3f} s in all did this process not run; cases were started again "
-                               "{} times for that",
-                               missed.count(), restarts_));
+                               "{} times for that, or for a supervisor that heard nothing",
+                               stood.count(), restarts_));
   }
 
-  /// What `find` comes to, again if this process did not run meanwhile and it is not good: then
-  /// that says nothing about the device.
+  /// What `find` comes to, again if it is not good and this process did not run meanwhile, or the
+  /// device was stopped for want of a sign of life: then that says nothing about the device.
   template <class Find, class IsGood>
   auto undisturbed(Find find, IsGood is_good) {
     for (int start = 1;; ++start) {
       const auto before = missed();
-      if (std::exchange(missed_before_, before) != before) bench_.resume();
+      if (std::exchange(missed_before_, before) != before || bench_.is_stopped()) bench_.resume();
       auto found = find();
-      is_disturbed_ = missed() != before && !is_good(found);
-      if (!is_disturbed_ || bench_.error() || start == kMostStarts) return found;
+      if (is_good(found)) {
+        is_disturbed_ = false;
+        return found;
+      }
+      is_disturbed_ = missed() != before;
+      const bool counts = !is_disturbed_ && !bench_.is_stopped();
+      if (counts || bench_.error() || start == kMostStarts) return found;
       ++restarts_;
     }
   }
@@ -296,7 +301,7 @@ class Run {
       bench_.begin(profile, options_.seed);
       bench_.bring_to(one.start);
       if (bench_.judgement().verdict == Verdict::kPass) return std::nullopt;
-      if (missed() != before) return bench_.judgement();
+      if (missed() != before || bench_.is_stopped()) return bench_.judgement();
       if (!killer_.empty() && bench_.judgement().verdict != Verdict::kSkipped) {
         return skipped(fmt::format(
             "{} ended or hung the device's program, and it has not come back", killer_));

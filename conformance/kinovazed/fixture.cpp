@@ -19,8 +19,6 @@ constexpr double kNowhere = 2.0;
 /// figures of way-points are known to 0.000001.
 constexpr double kBeyond = 0.002;
 
-double reach_of(std::size_t component) { return component < 3 ? kReachMetres : kReachRadians; }
-
 /// The server looks every 10 ms and five calls; stopping the arm takes three pauses of 10 ms.
 Duration look_time(const ServerBench& server) { return 120ms + 6 * server.noise(); }
 

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <span>
 #include <string_view>
 
+#include "conformance/kinovazed/route.hpp"
 #include "conformance/kinovazed/server_bench.hpp"
 
 /// An arm whose hand somebody holds and puts to places: what no message tells, the server's
 /// reaction to a place does. Cases with it are skipped where nobody can do that.
 namespace armjig::kinovazed::conformance {
-
-/// Metres, then radians: x, y, z, pitch, yaw, roll, as the server compares them.
-using Place = std::array<double, 6>;
-
-/// Within that a way-point counts as reached, in metres and radians (kinovazed.objective.near).
-inline constexpr double kReachMetres = 0.05;
-inline constexpr double kReachRadians = 0.25;
 
 /// The hand stays where it is, whatever the server asks for, until it is let go or the case is
 /// over.

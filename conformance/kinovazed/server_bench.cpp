@@ -319,13 +319,15 @@ std::optional<Heard> ServerBench::event_of(std::string_view command, Event event
   if (word && word->is(event))
     is_documented() ? pass_over_accepted() : void(expect(Event::kAccepted));
   if (word && word->is(Event::kAccepted)) word = next_word(within);
-  if (!word) fail_by_no_line(behind(to_string(event)), within);
   return word;
 }
 
 Heard ServerBench::perform(std::string_view command, Event event, Duration within) {
   const auto word = event_of(command, event, within);
-  if (!word) return {now()};
+  if (!word) {
+    fail_by_no_line(behind(to_string(event)), within);
+    return {now()};
+  }
   if (!word->is(event)) fail_by(to_string(event), *word);
   return *word;
 }

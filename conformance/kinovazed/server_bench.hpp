@@ -100,6 +100,9 @@ class ServerBench final : public PortBench<SessionSource> {
   /// A command and its event. If the arm is there already, they come in any order.
   /// Gives the event.
   Heard perform(std::string_view command, Event event, Duration within = kMotionTime);
+  /// What comes besides `Accepted`, whatever it is; none: nothing, which is no finding.
+  [[nodiscard]] std::optional<Heard> event_of(std::string_view command, Event event,
+                                              Duration within = kMotionTime);
   /// A line that is no command: silence in profile firmware, `Rejected` in documented.
   void not_understood(std::string_view line);
   /// Bytes that get no answer, in no profile.
@@ -172,9 +175,6 @@ class ServerBench final : public PortBench<SessionSource> {
   void take_line(std::string_view line);
   [[nodiscard]] std::optional<Heard> next_word(Duration within);
   void pass_over_accepted();
-  /// What comes besides Accepted; none: silence, which has failed.
-  [[nodiscard]] std::optional<Heard> event_of(std::string_view command, Event event,
-                                              Duration within);
   [[nodiscard]] std::optional<Heard> next_beat(Instant after, Duration within);
   [[nodiscard]] bool stop_all();
   [[nodiscard]] std::optional<Heard> beat_in_use();

@@ -69,9 +69,12 @@ class Rig {
   /// How often the guard refused something or stopped the arm.
   [[nodiscard]] std::size_t refusals() const { return watch_ == nullptr ? 0 : watch_->refusals; }
 
-  /// The arm was stopped because this program gave no sign of life, and may not move any more.
-  [[nodiscard]] bool is_unsupervised() const {
-    return watch_ != nullptr && watch_->is_unsupervised;
+  /// Whether the arm was stopped because this program gave no sign of life, and may not move any
+  /// more. It gives one now.
+  [[nodiscard]] bool is_unsupervised() {
+    if (watch_ == nullptr) return false;
+    watch_->give_sign_of_life();
+    return watch_->is_unsupervised;
   }
 
   /// Lets it move again: see `GuardState::resume`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/kinovazed/cases.hpp"
 #include "conformance/kinovazed/fixture.hpp"
+#include "conformance/kinovazed/tour.hpp"
 
 namespace armjig::kinovazed::conformance {
 namespace {
@@ -85,6 +86,41 @@ constexpr std::array kOpenDoorAtHandle{
 constexpr std::array kPullDoorAtHandle{
     Place{-0.327446, -0.368196, 0.516255, 2.991299, -1.333410, 1.421750},
     Place{-0.438910, -0.245446, 0.553590, -2.814398, -1.429396, 1.901671}};
+
+// The same of relative ones as they lie to the hand (reference 9.3).
+constexpr Place kHere{};
+constexpr std::array kOpenDoorOffsets{kHere,
+                                      Place{-0.003, 0.008, 0, -0.027, -0.008, 0.713},
+                                      Place{-0.033, 0.015, -0.197, -0.060, 0.192, 0.598},
+                                      Place{-0.063, 0, -0.190, -0.059, 0.069, -1.543},
+                                      Place{-0.070, 0.083, -0.188, -0.053, 0.055, -1.555},
+                                      Place{0.171, 0.030, -0.319, -0.006, 0.614, -0.106},
+                                      Place{0.163, -0.191, -0.039, 0.023, 0.216, -0.125}};
+constexpr std::array kPullDoorOffsets{kHere, Place{-0.450, -0.080, -0.272, 1.006, -1.298, 0.902},
+                                      Place{-0.576, -0.031, -0.375, 1.013, -1.427, 0.919}};
+
+constexpr Course kHome{"Home", kHomePoints, false};
+constexpr Course kHandle{"Handle", kHandlePoints, false};
+constexpr Course kSuckDoor{"SuckDoor", kSuckDoorPoints, false};
+constexpr Course kAntenna{"Antenna", kAntennaPoints, false};
+constexpr Course kFindBottle{"FindBottle", kAntennaPoints, false};
+constexpr Course kPlaceBottle{"PlaceBottle", kPlaceBottlePoints, false};
+constexpr Course kOpenDoor{"OpenDoor", kOpenDoorOffsets, true};
+constexpr Course kPullDoor{"PullDoor", kPullDoorOffsets, true};
+
+// Tours in which no objective has a part in more than half of the legs: it begins one and ends one.
+constexpr std::array kFixedTour{kHome,     kSuckDoor, kHandle, kAntenna, kHome,    kHandle,
+                                kSuckDoor, kAntenna,  kHandle, kHome,    kAntenna, kSuckDoor};
+constexpr std::array kDoorTour{kHandle,   kOpenDoor, kHome,     kHandle, kPullDoor,
+                               kSuckDoor, kOpenDoor, kAntenna,  kHandle, kHome,
+                               kPullDoor, kHandle,   kSuckDoor, kHome,   kOpenDoor};
+constexpr std::array kBottleTour{kHome, kFindBottle,  kSuckDoor, kPlaceBottle, kHandle, kFindBottle,
+                                 kHome, kPlaceBottle, kSuckDoor, kHandle,      kHome};
+
+template <const auto& courses>
+void tour(ServerBench& server) {
+  expect_tour(server, kReadyPlace, courses);
+}
 
 template <Objective objective, const auto& way_points, const Place& first>
 void points(ServerBench& server) {
@@ -191,6 +227,21 @@ constexpr Clause kObjectiveClauses[] = {
                        on<all_points<Objective::kFindBottle>>)),
     variant("place", in(kIdle, "A second PlaceBottle takes more than 1.3 s.",
                         on<all_points<Objective::kPlaceBottle>>)),
+
+    must("kinovazed.objective.ways",
+         "An objective takes as long as the way from where the arm is through its way-points, each "
+         "of which is left where it counts as reached.",
+         "server; reference 9.2, 9.3 and 9.5"),
+    /// Told by an arm that goes straight at an even speed, which its own times show.
+    variant("fixed", quick(in(kIdle, "Eleven legs between Home, Handle, SuckDoor and Antenna.",
+                              on<tour<kFixedTour>>))),
+    variant("doors", quick(in(kIdle, "Three of OpenDoor and two of PullDoor among others.",
+                              on<tour<kDoorTour>>))),
+
+    must("kinovazed.objective.ways-of-bottles",
+         "FindBottle and PlaceBottle take as long as the way through their way-points.",
+         "server; reference 9.2 and 9.3", Profiles::kFirmware),
+    in(kIdle, "Two of each among others.", on<tour<kBottleTour>>),
 
     must("kinovazed.objective.stops-there",
          "The arm is stopped where its last way-point counts as reached.", "server; reference 9.2"),

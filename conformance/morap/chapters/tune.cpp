@@ -19,6 +19,15 @@ void tuned(NodeBench& node) {
   }
 }
 
+/// The same where the set before had more coefficients than any that is tuned.
+template <TuneKind kind>
+void tuned_after_a_larger_one(NodeBench& node) {
+  const auto most = filter({0.0F, 0.0F, 0.0F, 0.0F});
+  node.send(ControllerSet{kind_of(kind), kIdleRateHz, most, most, most, 0.0F});
+  node.settle();
+  tuned<kind>(node);
+}
+
 void expect_rate(NodeBench& node, TuneKind kind, float inertia, int rate_hz) {
   node.about(fmt::format("inertia {}", inertia));
   node.tune(kind, inertia, -9.0F);
@@ -52,6 +61,8 @@ constexpr Clause kTuneClauses[] = {
     must("morap.tune.pd", "Kind 0 gives the PD position controller of those poles, byte for byte.",
          "vectors 42 and 45; recording static-tune-pd", Profiles::kFirmware),
     programming("Light and heavy loads, slow and fast poles.", on<tuned<kPdPosition>>),
+    variant("after-larger", programming("After a set of four coefficients each.",
+                                        on<tuned_after_a_larger_one<kPdPosition>>)),
 
     must("morap.tune.pid",
          "Kind 1 gives the PID position controller of those poles, byte for byte.",
@@ -61,6 +72,8 @@ constexpr Clause kTuneClauses[] = {
     must("morap.tune.pi", "Kind 2 gives the PI speed controller of those poles, byte for byte.",
          "vectors 43 and 47; recording static-tune-pi-speed", Profiles::kFirmware),
     programming("Light and heavy loads, slow and fast poles.", on<tuned<kPiSpeed>>),
+    variant("after-larger", programming("After a set of four coefficients each.",
+                                        on<tuned_after_a_larger_one<kPiSpeed>>)),
 
     must("morap.tune.position-rate",
          "A tuned position controller runs at 625 Hz with a light load and at 400 Hz with a heavy "

@@ -43,6 +43,8 @@ class NumberBench final : public Bench {
     hear_noise(noise_here);
   }
   [[nodiscard]] Duration longest_answer() const noexcept override { return 500ms; }
+  [[nodiscard]] bool is_stopped() override { return is_stopped_now; }
+  void resume() override { is_stopped_now = false; }
   using Bench::lose_link;
   [[nodiscard]] Instant now() const override { return at(1s * calls); }
   [[nodiscard]] std::string last_exchange() const override { return "the last exchange\n"; }
@@ -61,9 +63,11 @@ class NumberBench final : public Bench {
   bool is_gibberish = false;
   bool leaves_beyond_open = false;
   bool obeys_firmware = true;
-  Duration missed{};       ///< in which it did not run
-  int stops_left = 0;      ///< so many times it stops in a case
-  int stops_in_start = 0;  ///< and on the way to its start
+  bool is_stopped_now = false;  ///< by who watches over it
+  int supervisors_left = 0;     ///< so many times that happens in a case
+  Duration missed{};            ///< in which it did not run
+  int stops_left = 0;           ///< so many times it stops in a case
+  int stops_in_start = 0;       ///< and on the way to its start
 
  protected:
   void forget_exchange() override {}
@@ -90,6 +94,14 @@ void fails_twice(Bench& bench) {
 }
 void fails_every_other_time(Bench& bench) {
   if (number(bench).calls % 2 == 0) bench.fail("an odd call", "an even one");
+}
+void moves_on(Bench& bench) {
+  auto& device = number(bench);
+  device.ran.emplace_back("moves on");
+  if (device.is_stopped_now) return bench.give_up("nobody watches over the arm");
+  if (device.supervisors_left-- <= 0) return;
+  device.is_stopped_now = true;
+  bench.give_up("nobody watches over the arm any more");
 }
 void is_late(Bench& bench) {
   auto& device = number(bench);
@@ -141,6 +153,7 @@ constexpr Requirement kRequirements[] = {
     {"n.firmware", Level::kMust, "It is shipped.", "here", Profiles::kFirmware, "n.documented"},
     {"n.beyond", Level::kMust, "It can be reached.", "here"},
     {"n.moves", Level::kMust, "It moves.", "here"},
+    {"n.watched", Level::kMust, "It is watched.", "here"},
 };
 
 constexpr Case kCases[] = {
@@ -151,6 +164,7 @@ constexpr Case kCases[] = {
     {.requirement = "n.flaky", .rule = "r", .run = fails_every_other_time},
     {.requirement = "n.quiet", .rule = "r", .run = is_quiet_once, .tier = Tier::kFull},
     {.requirement = "n.skips", .rule = "r", .run = skips},
+    {.requirement = "n.watched", .rule = "r", .run = moves_on},
     {.requirement = "n.beyond", .variant = "a", .rule = "r", .run = passes, .start = 2},
     {.requirement = "n.beyond", .variant = "b", .rule = "r", .run = passes, .start = 2},
     {.requirement = "n.late", .rule = "r", .run = is_late},
@@ -260,8 +274,8 @@ TEST(ConformanceRun, SkipsWhatIsLeftWhenItIsStopped) {
   const auto rows = verdicts(report);
   EXPECT_EQ(rows[0], "n.pass pass");
   EXPECT_EQ(rows[1], "n.fail skipped") << "it was under way, so nobody knows what it shows";
-  EXPECT_EQ(report.count(Verdict::kSkipped), 12U) << "and each of the others is named";
-  EXPECT_EQ(report.rows.size(), 13U);
+  EXPECT_EQ(report.count(Verdict::kSkipped), 13U) << "and each of the others is named";
+  EXPECT_EQ(report.rows.size(), 14U);
   EXPECT_THAT(report.rows.back().actual, HasSubstr("interrupted"));
 }
 
@@ -482,6 +496,22 @@ TEST(ConformanceRun, StartsACaseAgainThatItDidNotWatch) {
   EXPECT_EQ(bench.ran.size(), 3U) << "two runs count";
   EXPECT_EQ(report.facts.back().first, "stopped");
   EXPECT_THAT(report.facts.back().second, HasSubstr("3.000 s"));
+}
+
+TEST(ConformanceRun, StartsACaseAgainInWhichASupervisorStoppedTheDevice) {
+  NumberBench bench;
+  bench.supervisors_left = 2;
+  const auto report = run(bench, "n.watched", {});
+  EXPECT_THAT(verdicts(report), ElementsAre("n.watched pass"));
+  EXPECT_EQ(bench.ran.size(), 3U);
+  EXPECT_EQ(report.facts.back().first, "stopped");
+}
+
+TEST(ConformanceRun, LetsTheNextCaseMoveAfterOneThatASupervisorStoppedEachTime) {
+  NumberBench bench;
+  bench.supervisors_left = 3;
+  EXPECT_THAT(verdicts(run(bench, "n.watched", {})), ElementsAre("n.watched skipped"));
+  EXPECT_THAT(verdicts(run(bench, "n.watched", {})), ElementsAre("n.watched pass"));
 }
 
 TEST(ConformanceRun, SkipsWhatNeedsAHandAlsoIfItDidNotWatch) {

@@ -6,12 +6,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "conformance/mutation.hpp"
 #include "conformance/run.hpp"
+#include "emulators/kinovazed/objectives.hpp"
 #include "harness/rig/target.hpp"
 #include "tests/unit/support/suites.hpp"
 
@@ -78,6 +83,58 @@ TEST(KinovazedSuite, FindsAServerSlowFromItsFirstAnswerOnThatNoLinkExcuses) {
   ASSERT_THAT(but_passed(slow), testing::SizeIs(1));
   EXPECT_EQ(slow.rows.front().verdict, Verdict::kFail);
   EXPECT_THAT(slow.rows.front().expected, testing::HasSubstr("0 to 500 ms"));
+}
+
+struct Moved {
+  Objective objective;
+  std::size_t point;
+  float emulation::Pose::* component;
+};
+
+std::string json_of(const emulation::Pose& pose) {
+  return fmt::format(R"({{"X":{},"Y":{},"Z":{},"pitch":{},"yaw":{},"roll":{}}})", pose.x, pose.y,
+                     pose.z, pose.pitch, pose.yaw, pose.roll);
+}
+
+/// The published objectives, one number of which is 0.15 too large.
+std::string objectives_with(const Moved& moved) {
+  std::string text;
+  const auto set = emulation::published_objectives();
+  for (std::size_t i = 0; i < kObjectiveNames.size(); ++i) {
+    auto path = *set.find(static_cast<Objective>(i));
+    if (path.objective == moved.objective) path.points[moved.point].*moved.component += 0.15F;
+    std::string points;
+    for (const auto& point : path.points) points += (points.empty() ? "" : ",") + json_of(point);
+    text +=
+        fmt::format(R"({}{{"name":"{}","is_abs":{},"origin":{},"sequence":[{}]}})",
+                    text.empty() ? "[" : ",", to_string(path.objective), path.origin.has_value(),
+                    json_of(path.origin.value_or(emulation::Pose{})), points);
+  }
+  return text + "]";
+}
+
+/// Without a hand at the arm, by times alone.
+TEST(KinovazedSuite, FindsAWayPointThatIsElsewhereByHowLongObjectivesTake) {
+  using emulation::Pose;
+  const auto file =
+      std::filesystem::temp_directory_path() / fmt::format("armjig-objectives-{}.json", ::getpid());
+  RunOptions options;
+  options.selection.filter = "kinovazed.objective.ways";
+  for (const auto& moved :
+       {Moved{Objective::kHome, 0, &Pose::x}, Moved{Objective::kHandle, 1, &Pose::y},
+        Moved{Objective::kSuckDoor, 0, &Pose::z}, Moved{Objective::kAntenna, 1, &Pose::x},
+        Moved{Objective::kOpenDoor, 3, &Pose::roll}, Moved{Objective::kOpenDoor, 6, &Pose::y},
+        Moved{Objective::kPullDoor, 2, &Pose::z}, Moved{Objective::kPlaceBottle, 0, &Pose::z}}) {
+    std::ofstream{file} << objectives_with(moved);
+    for (const auto* plant : {"jaco", "bench"}) {
+      const auto report =
+          run(fmt::format("emulated:?plant={}&objectives={}", plant, file.string()), options);
+      EXPECT_EQ(conclusion_of(report), Conclusion::kFindings)
+          << to_string(moved.objective) << " " << moved.point << " " << plant
+          << testing::PrintToString(but_passed(report));
+    }
+  }
+  std::filesystem::remove(file);
 }
 
 TEST(KinovazedSuite, PassesOnTheDocumentedServer) {

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/kinovazed/tour.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "conformance/kinovazed/ways.hpp"
+#include "conformance/kinovazed/wording.hpp"
+
+namespace armjig::kinovazed::conformance {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How far a leg may be off the pace of the others: the server looks every 10 ms and five calls,
+/// and the arm goes on meanwhile.
+Duration slack(const ServerBench& server, Duration time) {
+  return 40ms + 3 * server.noise() + time / 100;
+}
+
+/// How long it takes; none: a relative one that does not end, whose way-points may be out of this
+/// arm's reach from here.
+std::optional<Duration> time_of(ServerBench& server, const Course& course) {
+  const auto said = server.now();
+  const auto command = fmt::format("RunObjective:{}", course.objective);
+  if (!course.is_relative) {
+    return server.perform(command, Event::kObjectiveDone).time - said;
+  }
+  const auto word = server.event_of(command, Event::kObjectiveDone);
+  if (!word) return std::nullopt;
+  if (!word->is(Event::kObjectiveDone)) server.fail_by("ObjectiveDone", *word);
+  return word->time - said;
+}
+
+/// Where the first one begins is not known exactly, nor where one does that comes after one without
+/// an end.
+std::vector<Leg> run_all(ServerBench& server, std::span<const Course> courses) {
+  std::vector<Leg> legs;
+  bool is_known = false;
+  for (const auto& course : courses) {
+    const auto time = time_of(server, course);
+    if (server.is_over()) break;
+    legs.push_back({course, time, is_known});
+    is_known = time.has_value();
+    if (!is_known) initialize_afresh(server);
+  }
+  return legs;
+}
+
+void expect_each(ServerBench& server, std::span<const Leg> legs) {
+  for (const auto& [course, time, is_known] : legs) {
+    const bool ends = std::ranges::any_of(legs, [&](const Leg& other) {
+      return other.course.objective == course.objective && other.time;
+    });
+    server.about(fmt::format("{}, wherever it was run", course.objective));
+    server.expect_true(ends, "ObjectiveDone", "none within 40 s, each time");
+  }
+}
+
+}  // namespace
+
+void expect_tour(ServerBench& server, const Place& begin, std::span<const Course> courses) {
+  const auto legs = run_all(server, courses);
+  expect_each(server, legs);
+  if (server.is_over()) return;
+  const auto due = times_at(pace_of(begin, legs), begin, legs);
+  std::vector<std::size_t> judged;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    if (legs[i].counts()) judged.push_back(i);
+  }
+  const auto is_on_pace = [&](std::size_t i) {
+    return std::chrono::abs(*legs[i].time - due[i]) <= slack(server, due[i]);
+  };
+  if (2 * std::ranges::count_if(judged, is_on_pace) < std::ssize(judged)) {
+    return server.skip("an arm that goes straight at an even speed, which its times do not show");
+  }
+  for (const auto i : judged) {
+    server.about(fmt::format("{} after {}, at the pace of the others", legs[i].course.objective,
+                             legs[i - 1].course.objective));
+    expect_time(server, *legs[i].time, due[i] - slack(server, due[i]),
+                due[i] + slack(server, due[i]));
+  }
+}
+
+}  // namespace armjig::kinovazed::conformance
