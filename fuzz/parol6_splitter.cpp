@@ -24,9 +24,6 @@ using parol6::CheckPolicy;
 using parol6::Splitter;
 using parol6::emulation::FirmwareReceiver;
 
-/// As text, since the library compares bytes one by one, and sanitizers look at each.
-bool are_equal(Bytes one, Bytes other) { return as_text(one) == as_text(other); }
-
 /// Feeds `in` in pieces of at most `piece` bytes.
 template <class Feed>
 void in_pieces(Bytes in, std::size_t piece, Feed feed) {

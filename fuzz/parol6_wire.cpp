@@ -29,11 +29,11 @@ std::array<std::byte, size> filled(Bytes data) {
 }
 
 /// Each bit of a body means something.
-template <std::size_t size, class Decode>
-void check_bit(const std::array<std::byte, size>& body, std::size_t bit, Decode decode) {
-  auto other = body;
-  other[bit / 8 % size] ^= std::byte{1} << bit % 8;
-  require(!(decode(other) == decode(body)), "other bytes are another frame");
+template <std::size_t size, class Frame, class Decode>
+void check_bit(std::array<std::byte, size> body, std::size_t bit, const Frame& frame,
+               Decode decode) {
+  body[bit / 8 % size] ^= std::byte{1} << bit % 8;
+  require(!(decode(body) == frame), "other bytes are another frame");
 }
 
 void check_readings(const TelemetryFrame& frame) {
@@ -59,17 +59,17 @@ void check_frames(Bytes data) {
   const auto asked = filled<kCommandBodySize>(data);
   const auto command = decode_command(asked);
   const auto command_bytes = encode(command);
-  require(std::ranges::equal(body_of(command_bytes), asked), "encode(decode(x)) == x, a command");
+  require(are_equal(body_of(command_bytes), asked), "encode(decode(x)) == x, a command");
   require(decode_command(body_of(command_bytes)) == command, "decode(encode(x)) == x, a command");
   const auto said = filled<kTelemetryBodySize>(data);
   const auto telemetry = decode_telemetry(said);
   const auto telemetry_bytes = encode(telemetry);
-  require(std::ranges::equal(body_of(telemetry_bytes), said), "encode(decode(x)) == x, telemetry");
+  require(are_equal(body_of(telemetry_bytes), said), "encode(decode(x)) == x, telemetry");
   require(decode_telemetry(body_of(telemetry_bytes)) == telemetry,
           "decode(encode(x)) == x, telemetry");
   const auto bit = data.empty() ? 0 : 8 * data.size() + std::to_integer<std::size_t>(data.back());
-  check_bit(asked, bit, decode_command);
-  check_bit(said, bit, decode_telemetry);
+  check_bit(asked, bit, command, decode_command);
+  check_bit(said, bit, telemetry, decode_telemetry);
   check_command(command);
   check_readings(telemetry);
 }

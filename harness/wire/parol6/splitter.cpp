@@ -23,6 +23,12 @@ std::size_t find_start(Bytes in) noexcept {
   return in.size();
 }
 
+/// Whether a frame starts where `in` begins, as far as it goes.
+bool may_start(Bytes in) noexcept {
+  const auto run = in.first(std::min(kStartSize, in.size()));
+  return std::ranges::all_of(run, [](std::byte b) { return b == kStartByte; });
+}
+
 bool is_one_more_start_byte(const Splitter::Fault& fault) noexcept {
   return fault.kind == Splitter::FaultKind::kWrongLength &&
          fault.value == std::to_integer<std::uint8_t>(kStartByte);
@@ -59,7 +65,7 @@ std::variant<std::monostate, Splitter::Frame, Splitter::Fault> Splitter::judge(
 std::size_t Splitter::next_candidate(Bytes rejected) const noexcept {
   for (std::size_t place = 1; place < rejected.size(); ++place) {
     const auto rest = rejected.subspan(place);
-    if (find_start(rest) != 0) continue;
+    if (!may_start(rest)) continue;
     if (rest.size() < kHeaderSize || rest[kStartSize] == length_byte()) return place;
   }
   return rejected.size();
@@ -106,8 +112,10 @@ Splitter::Step Splitter::step_held(Bytes in) noexcept {
     std::memcpy(buffer_.data() + held_, in.data() + used, taken);
     held_ += taken;
     used += taken;
+    // A header that was found right is not judged again.
+    if (held_ > kHeaderSize && held_ < frame_size_) return {used, {}};
     const auto candidate = Bytes{buffer_}.first(held_);
-    if (find_start(candidate) != 0) {  // a run of start bytes broke off
+    if (!may_start(candidate)) {  // a run of start bytes broke off
       hold(candidate.subspan(next_candidate(candidate)));
       continue;
     }
