@@ -62,10 +62,10 @@ void Server::terminate(Instant time) {
 std::optional<Instant> Server::next_event() const noexcept {
   if (life_ == Life::kEnded) return restart_;
   if (has_task()) return now_;
-  const auto arm = worker_.next_event();
+  auto next = worker_.next_event();
   const bool beats = life_ == Life::kRunning && waiting_ == Waiting::kNo;
-  if (!beats) return arm;
-  return arm ? std::min(*arm, beat_due_) : beat_due_;
+  if (beats && (!next || beat_due_ < *next)) next = beat_due_;
+  return next;
 }
 
 /// Up to, but not at a moment that is reached already: what comes at one moment comes before any

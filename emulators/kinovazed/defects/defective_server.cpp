@@ -125,11 +125,10 @@ void DefectiveServer::advance_to(Instant time) {
 }
 
 std::optional<Instant> DefectiveServer::next_event() const noexcept {
-  const auto of_server = server_.next_event();
-  std::optional<Instant> next;
-  if (of_server) next = *of_server + epoch_.time_since_epoch();
-  if (later_.empty()) return next;
-  return next ? std::min(*next, later_.front().time) : later_.front().time;
+  auto next = server_.next_event();
+  if (next) *next += epoch_.time_since_epoch();
+  if (!later_.empty() && (!next || later_.front().time < *next)) next = later_.front().time;
+  return next;
 }
 
 void DefectiveServer::take_sent(Instant time) {
