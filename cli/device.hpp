@@ -16,6 +16,7 @@
 #include "conformance/program_check.hpp"
 #include "conformance/suite.hpp"
 #include "emulators/campaign/alphabet.hpp"
+#include "emulators/campaign/author.hpp"
 #include "emulators/memory/clocked.hpp"
 #include "emulators/memory/hosted.hpp"
 #include "emulators/memory/in_memory.hpp"
@@ -88,6 +89,8 @@ struct FuzzEntry {
   /// How long after a message began the device may still be busy with it, where what comes
   /// meanwhile changes what it makes of it: live nobody knows whether it does; nullptr: never.
   Duration (*works_on)(Bytes message){};
+  /// With which cases end now and then, where the device does not show at once where it was led.
+  campaign::Epilogue epilogue{};
   /// The machines that `--learn` learns; empty: none.
   std::span<const campaign::Learnable> machines{};
 };

@@ -26,6 +26,9 @@ constexpr std::uint32_t kOwnConnection = 99;
 /// How long what is asked harmlessly may take.
 constexpr Duration kPauseAfterQuestion = 20ms;
 
+/// In real time an epilogue takes as long as several other cases.
+constexpr std::int64_t kEpilogueLive = 12;
+
 /// On a link in real time, what is closer together may come in one piece or in two, and nobody
 /// knows which. A client that leaves at once may or may not have its answer, and a server that
 /// answers one who has gone may be another thing after it than one that answered in time.
@@ -181,7 +184,8 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
                           .has_hands = how.target.is_emulated(),
                           .has_operations = how.target.is_emulated(),
                           .longest = longest,
-                          .spacing = how.target.is_emulated() ? Spacing{} : spacing_live(device)};
+                          .spacing = how.target.is_emulated() ? Spacing{} : spacing_live(device),
+                          .epilogue = device.fuzz.epilogue};
         auto probe = kind.make_probe(rig->port(), model.target.text);
         if (!probe) return tl::unexpected{probe.error()};
         const auto request = (*probe)->request();
@@ -190,8 +194,10 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
         const auto judge = kind.make_judge();
         material.harmless = harmless_script(material.kind, {request.begin(), request.end()},
                                             how.target.is_emulated() ? Messages{} : judge->stop());
-        if (!how.target.is_emulated())
+        if (!how.target.is_emulated()) {
           material.permit = permit_of(kind.make_judge, how.permissions);
+          material.epilogue.one_in = kEpilogueLive;
+        }
         return material;
       },
       device.port);

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/replay/kinovazed.hpp"
+
+#include <array>
+#include <chrono>
+#include <string_view>
+
 #include "cli/devices/devices.hpp"
 #include "cli/devices/machines.hpp"
 #include "conformance/kinovazed/host/check.hpp"
@@ -16,12 +21,18 @@
 namespace armjig::kinovazed {
 namespace {
 
+using namespace std::chrono_literals;
+
 /// When in a second a server beats, it alone knows.
 constexpr std::string_view kLiveRules = R"(
 time_ms = 100
 order = "free"
 message = [{name = "Heartbeat", ignore = true}]
 )";
+
+/// How long an objective takes says where the arm was; what comes after it has to be waited for.
+constexpr std::array<std::string_view, 3> kWayHome{
+    "RunObjective:Home\r\n", "GetAbsolutePosition\r\n", "GetAbsolutePosition\r\n"};
 
 }  // namespace
 
@@ -49,7 +60,7 @@ cli::Device device() {
                      .verify_table = replay::verify_matrix},
           .draw_session = sessions::draw,
           .live_rules = kLiveRules,
-          .fuzz = {.machines = machines()},
+          .fuzz = {.epilogue = {kWayHome, 2s}, .machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures};
 }

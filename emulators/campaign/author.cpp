@@ -239,6 +239,8 @@ Script Author::draw(std::uint64_t seed, const std::vector<Script>& worthy) const
     (this->*change)(dice, script);
   }
   fit(dice, script);
+  const auto& epilogue = material_.epilogue;
+  if (!epilogue.messages.empty() && dice.one_in(epilogue.one_in)) end(script);
   if (material_.permit) material_.permit(script);
   return script;
 }
@@ -530,6 +532,20 @@ void Author::fit(Dice& dice, Script& script) const {
   for (auto& record : script) {
     const auto goes_on = record.details.find(R"(,"stop":false)");
     if (goes_on != std::string::npos) record.details.resize(goes_on);
+  }
+}
+
+/// With the epilogue, from whoever sent something last.
+void Author::end(Script& script) const {
+  const auto places = sent_in(script);
+  if (places.empty()) return;
+  auto record = script[places.back()];
+  record.time = script.back().time;
+  for (const auto message : material_.epilogue.messages) {
+    const auto bytes = std::as_bytes(std::span{message});
+    record.time += material_.epilogue.pause;
+    record.bytes.assign(bytes.begin(), bytes.end());
+    script.push_back(record);
   }
 }
 

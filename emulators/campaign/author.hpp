@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "emulators/campaign/script.hpp"
@@ -12,6 +13,14 @@
 #include "emulators/sessions/sessions.hpp"
 
 namespace armjig::campaign {
+
+/// What shows in no answer at once, such as where an arm was led, shows in what these are answered
+/// with, or when.
+struct Epilogue {
+  std::span<const std::string_view> messages{};
+  Duration pause{};         ///< between them
+  std::int64_t one_in = 3;  ///< so many scripts ends with them
+};
 
 /// What scripts are made of: all that is known of a device.
 struct Material {
@@ -30,6 +39,7 @@ struct Material {
   bool has_operations = true;  ///< of a bus: transactions may have any form
   Duration longest{};          ///< of a script
   Spacing spacing{};
+  Epilogue epilogue{};  ///< empty: all shows at once
 };
 
 /// Writes scripts: sessions of the device drawn at random, and what is made of those that showed
@@ -70,6 +80,7 @@ class Author {
   void move_time(Dice& dice, Script& script) const;
   void hurry(Dice& dice, Script& script) const;
   void fit(Dice& dice, Script& script) const;
+  void end(Script& script) const;
 
   const Material& material_;
 };

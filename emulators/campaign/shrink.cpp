@@ -22,6 +22,11 @@ class Shrinking {
 
   [[nodiscard]] Script take() { return std::move(script_); }
 
+  /// If the last one that showed it was given up again.
+  void look_again() {
+    if (!is_seen_last_) (void)shows_(script_);
+  }
+
   /// Without what does not matter: large pieces first. False: nothing could be left out.
   bool leave_out() {
     const auto before = script_.size();
@@ -98,7 +103,7 @@ class Shrinking {
           for (const auto pause : {1ms, 7ms}) {
             if (!may_go_on_()) return false;
             if (look_often(lead, question, pause, full.size())) return true;
-            script_ = full;
+            give_back(full);
           }
         }
       }
@@ -213,7 +218,14 @@ class Shrinking {
   bool try_instead(Script other) {
     if (other == script_ || !may_go_on_() || !shows_(other)) return false;
     script_ = std::move(other);
+    is_seen_last_ = true;
     return true;
+  }
+
+  /// In place of what shows it as well.
+  void give_back(const Script& before) {
+    is_seen_last_ = is_seen_last_ && script_ == before;
+    script_ = before;
   }
 
   /// Of many records a few pieces are tried first: where each of them matters, as where something
@@ -239,12 +251,13 @@ class Shrinking {
 
   void leave_out(std::size_t piece) {
     if (!is_worth_it(piece)) return;
-    // From the end, where what matters is, so that what leads there is tried as a whole.
+    // From the end, where what matters is, so that what leads there is tried as a whole. Of pairs
+    // all, since what belongs together, as the end of a connection and the next one, may lie so.
+    const auto step = piece == 2 ? 1 : piece;
     auto end = script_.size();
     while (end > 0 && may_go_on_()) {
       const auto begin = end > piece ? end - piece : 0;
-      (void)try_without(begin, end);
-      end = begin;
+      end -= std::min(end, try_without(begin, end) ? piece : step);
     }
   }
 
@@ -353,7 +366,8 @@ class Shrinking {
   }
 
   Script script_;
-  bool is_counted_ = false;  ///< it is mostly harmless exchanges, as many as it takes
+  bool is_seen_last_ = true;  ///< of all that was looked at and showed it
+  bool is_counted_ = false;   ///< it is mostly harmless exchanges, as many as it takes
   MakeDissector make_dissector_;
   const Shows& shows_;
   const std::function<bool()>& may_go_on_;
@@ -385,6 +399,7 @@ Script shrink(Script script, const Script& plain, MakeDissector make_dissector, 
   shrinking.hurry();
   shrinking.simplify(plain);
   (void)shrinking.leave_out();
+  shrinking.look_again();
   return shrinking.take();
 }
 

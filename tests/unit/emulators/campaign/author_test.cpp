@@ -76,5 +76,24 @@ TEST(Author, RepeatsAMessageMoreThanAThousandTimesInTheTimeOfMostCases) {
   }));
 }
 
+TEST(Author, EndsOneScriptInThreeWithTheEpilogue) {
+  constexpr std::array<std::string_view, 2> kMessages{"Home", "Where"};
+  auto material = kMaterial;
+  material.epilogue = {kMessages, 2s};
+  const Author author{material};
+  int ended = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const auto script = author.draw(seed, {kGoTo});
+    if (script.size() < 3 || as_text(script.back().bytes) != "Where") continue;
+    ++ended;
+    const auto& home = script[script.size() - 2];
+    EXPECT_EQ(as_text(home.bytes), "Home");
+    EXPECT_EQ(script.back().time - home.time, 2s);
+    EXPECT_EQ(home.time - script[script.size() - 3].time, 2s);
+  }
+  EXPECT_GT(ended, 70);
+  EXPECT_LT(ended, 130);
+}
+
 }  // namespace
 }  // namespace armjig::campaign

@@ -94,6 +94,38 @@ TEST(Shrink, LeavesOutAllThatAreAlikeAtOnce) {
   EXPECT_LT(attempts, 3'000);
 }
 
+TEST(Shrink, LeavesOutPairsWhereverTheyBegin) {
+  constexpr unsigned kFirst = 100;
+  constexpr unsigned kLast = 101;
+  constexpr unsigned kPairs = 20;
+  Script script{byte_at({}, kFirst)};
+  for (unsigned i = 0; i < 2 * kPairs; ++i) script.push_back(byte_at((i + 1) * 10ms, i / 2));
+  script.push_back(byte_at(1s, kLast));
+  const auto has_whole_pairs = [](const Script& one) {
+    for (unsigned i = 0; i < kPairs; ++i) {
+      const auto count = std::ranges::count(one, byte_at({}, i).bytes, &KeptRecord::bytes);
+      if (count == 1) return false;
+    }
+    return has(one, kFirst) && has(one, kLast);
+  };
+  const auto shorter = shrink(script, {}, demo::make_dissector, has_whole_pairs, kAlways);
+  EXPECT_EQ(shorter.size(), 2U);
+}
+
+TEST(Shrink, LooksAtWhatItReturnsLast) {
+  Script script;
+  for (unsigned i = 0; i < 5; ++i) script.push_back(byte_at(i * 10ms, 7));
+  Script last;
+  const auto takes_long = [&](const Script& one) {
+    const bool shows = length_of(one) >= 40ms && one.size() >= 5;
+    if (shows) last = one;  // such as many more that come sooner, which are given up again
+    return shows;
+  };
+  const auto shorter = shrink(script, {}, demo::make_dissector, takes_long, kAlways);
+  EXPECT_EQ(shorter.size(), 5U);
+  EXPECT_EQ(last, shorter);
+}
+
 TEST(Shrink, EndsWhenItMayNotGoOn) {
   int attempts = 0;
   const auto script = bytes_up_to(50);
