@@ -60,7 +60,7 @@ void check_answers(std::span<const Emission> sent, bool has_leapt) {
             "each frame is answered before the next");
     ++answers;
     const auto frame = decode_telemetry(body_of(*bytes));
-    require(encode(frame) == *bytes, "each answer is a frame");
+    require(are_equal(encode(frame), *bytes), "each answer is a frame");
     for (std::size_t j = 0; before && !has_leapt && j < kJointCount; ++j) {
       const auto steps = std::int64_t{frame.position[j].value} - before->position[j].value;
       require(std::abs(steps) <= kMostSteps, "a joint makes no more than a step in each pass");
