@@ -32,6 +32,7 @@ PlaySessions sessions_beside(const Device& device, const Target& target, const D
     auto material = material_of(reference, how, model, kLongestEmulated);
     if (!material) return tl::unexpected{material.error()};
     material->has_hands = beside.has_hands;
+    material->are_ends_told = beside.are_ends_told;
     const auto stage = stage_of(device, how, reference, model, {}, kHorizon);
     const CampaignOptions options{
         .seed = seed,

@@ -14,6 +14,8 @@ struct BesideHow {
   std::size_t most_attempts = 500;
   /// What is beside the link is done, too, so that not all of a session is bytes.
   bool has_hands = true;
+  /// A server is told that a client closed; a system tells it only that nothing more comes.
+  bool are_ends_told = true;
   /// What differs in time alone by no more is equal, and so is what one comes past in that time.
   Duration tolerance{};
 };

@@ -16,7 +16,7 @@
 #include "conformance/program_check.hpp"
 #include "conformance/suite.hpp"
 #include "emulators/campaign/alphabet.hpp"
-#include "emulators/campaign/author.hpp"
+#include "emulators/campaign/material.hpp"
 #include "emulators/memory/clocked.hpp"
 #include "emulators/memory/hosted.hpp"
 #include "emulators/memory/in_memory.hpp"

@@ -230,6 +230,7 @@ CampaignOptions campaign_options(const FuzzRun& run, const CampaignState& state,
     options.cases_between_resets = kCasesBetweenResetsLive;
     options.confirmations = 3;
     options.most_shrinking = kShrinkingLive;
+    options.begins_with_survey = true;
     options.judging.horizon += options.judging.rules.time_tolerance;
     options.excuses.add({}, "connection", "time");  // of whoever carries the end of it
   }

@@ -7,7 +7,7 @@
 
 #include "cli/device.hpp"
 #include "conformance/bench.hpp"
-#include "emulators/campaign/author.hpp"
+#include "emulators/campaign/material.hpp"
 #include "emulators/campaign/folder.hpp"
 #include "emulators/campaign/stage.hpp"
 

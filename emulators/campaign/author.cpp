@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <map>
 #include <optional>
@@ -11,7 +10,6 @@
 #include <utility>
 
 #include "emulators/sessions/odd_fields.hpp"
-#include "harness/link/bus_port.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -21,8 +19,6 @@ using sessions::Dice;
 
 constexpr std::size_t kMostRecords = 3000;
 constexpr std::size_t kMostBytes = 4096;  ///< of one record
-/// What buses of Linux carry in one transaction.
-constexpr std::int64_t kMostBusBytes = 255;
 
 /// As often below an eighth of the way as above half of it, also where the way is short.
 std::int64_t mostly_few(Dice& dice, std::int64_t least, std::int64_t most) {
@@ -38,16 +34,7 @@ std::size_t some_count(Dice& dice) {
   return static_cast<std::size_t>(dice.one_in(2) ? most : dice.between(1, most));
 }
 
-/// The places of the records that send bytes.
-std::vector<std::size_t> sent_in(const Script& script) {
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < script.size(); ++i) {
-    if (is_sent(script[i]) && !script[i].bytes.empty()) places.push_back(i);
-  }
-  return places;
-}
-
-/// One of them; nullptr if there is none.
+/// One that sends bytes; nullptr if there is none.
 KeptRecord* some_sent(Dice& dice, Script& script) {
   const auto places = sent_in(script);
   return places.empty() ? nullptr : &script[dice.one_of(places)];
@@ -66,14 +53,6 @@ Duration some_pause(Dice& dice) {
 Duration some_pause_of(Dice& dice, std::size_t count) {
   constexpr Duration kMostTogether = 5s;
   return std::min(some_pause(dice), kMostTogether / static_cast<std::int64_t>(count));
-}
-
-/// The last of what belongs to the record there: on a bus, a choice and what it chose are read
-/// together.
-std::size_t end_of_exchange(const Script& script, std::size_t place) {
-  const bool is_followed = script[place].kind == LinkKind::kBus && place + 1 < script.size() &&
-                           script[place + 1].kind == LinkKind::kBus && !is_sent(script[place + 1]);
-  return is_followed ? place + 1 : place;
 }
 
 /// So many copies of what is from `first` to `last` after it, each `pause` after the one before;
@@ -98,36 +77,13 @@ void insert_copies(Script& script, std::size_t first, std::size_t last, std::siz
 }
 
 /// Bits of a float that computations go wrong with.
-std::int64_t odd_float(Dice& dice) {
-  constexpr std::array<std::int64_t, 9> kBits{
-      0x7FC0'0000, 0x7F80'0000, 0xFF80'0000, 0x8000'0000, 1,
-      0x7F7F'FFFF, 0xFF7F'FFFF, 0x3F80'0000, 0x7F80'0001};  // NaN, inf, -inf, -0, denormal, ends, 1
-  return dice.one_of(kBits);
-}
-
-/// Numbers beside which computations turn: powers of two and of ten, and angles.
-constexpr std::array<std::int64_t, 28> kEdges{
-    1,      2,      4,       8,       10,        16,        32,        64,       90,    100,
-    128,    180,    256,     512,     1000,      1'024,     2'048,     4'096,    8'192, 10'000,
-    32'768, 65'536, 100'000, 1 << 20, 1'000'000, 1LL << 22, 1LL << 23, 1LL << 31};
-/// They, what is next to them, and the same below zero.
-constexpr std::size_t kEdgeCount = kEdges.size() * 6;
-
-std::int64_t edge_at(std::size_t place) {
-  const auto value =
-      kEdges.at(place / 6 % kEdges.size()) + static_cast<std::int64_t>(place % 3) - 1;
-  return place % 6 < 3 ? value : -value;
-}
+std::int64_t odd_float(Dice& dice) { return dice.one_of(kOddFloats); }
 
 std::int64_t edge(Dice& dice) {
-  const auto place = dice.number<std::size_t>(0, kEdges.size() - 1) * 6;
+  const auto place = dice.number<std::size_t>(0, kEdgeCount / 6 - 1) * 6;
   return edge_at(place + dice.number<std::size_t>(0, 2) + (dice.one_in(3) ? 3 : 0));
 }
 
-/// Bits of a float with that value, or with a part of it.
-std::int64_t float_of(std::int64_t value, float part) {
-  return std::bit_cast<std::int32_t>(static_cast<float>(value) * part);
-}
 float some_part(Dice& dice) {
   constexpr std::array<float, 5> kParts{1, 0.5, 0.1F, 0.01F, 0.001F};
   return dice.one_of(kParts);
@@ -141,10 +97,7 @@ std::int64_t beside(Dice& dice, std::int64_t value) {
 }
 
 /// A byte that readers of text or of numbers may take otherwise.
-std::byte odd_byte(Dice& dice) {
-  constexpr std::string_view kOdd{"\0\t\n\v\f\r :+-.,0%\x1a\x7f\x80\xff", 18};
-  return static_cast<std::byte>(dice.one_of(kOdd));
-}
+std::byte odd_byte(Dice& dice) { return static_cast<std::byte>(dice.one_of(kOddBytes)); }
 
 /// An end of the field's range, with or without a sign.
 std::int64_t end_of(Dice& dice, const Field& field) {
@@ -183,22 +136,6 @@ std::string number_as_text(Dice& dice) {
   constexpr std::array<std::string_view, 5> kBefore{"+", "0", " ", "0x", "--"};
   constexpr std::array<std::string_view, 5> kAfter{".0", " ", "e1", "\v", ""};
   return std::string{dice.one_of(kBefore)}.append(number).append(dice.one_of(kAfter));
-}
-
-/// The piece of a line that colons divide, replaced.
-void set_piece(const Field& field, std::vector<std::byte>& line, std::string_view text) {
-  constexpr std::byte kColon{':'};
-  auto begin = line.begin();
-  for (auto left = field.offset; left > 0 && begin != line.end(); --left) {
-    begin = std::find(begin, line.end(), kColon);
-    if (begin != line.end()) ++begin;
-  }
-  const auto end = std::find_if(begin, line.end(), [](std::byte byte) {
-    return byte == kColon || byte == std::byte{'\r'} || byte == std::byte{'\n'};
-  });
-  const auto bytes = std::as_bytes(std::span{text});
-  const auto place = line.erase(begin, end);
-  line.insert(place, bytes.begin(), bytes.end());
 }
 
 void spoil_piece_of(Dice& dice, const Field& field, std::vector<std::byte>& line) {
@@ -240,7 +177,9 @@ Script Author::draw(std::uint64_t seed, const std::vector<Script>& worthy) const
   }
   fit(dice, script);
   const auto& epilogue = material_.epilogue;
-  if (!epilogue.messages.empty() && dice.one_in(epilogue.one_in)) end(script);
+  if (!epilogue.messages.empty() && dice.one_in(epilogue.one_in)) {
+    add_epilogue(material_, script);
+  }
   if (material_.permit) material_.permit(script);
   return script;
 }
@@ -297,43 +236,7 @@ void Author::spoil_field(Dice& dice, KeptRecord& record, const Message& whole,
   if (field.place == Place::kPiece) return spoil_piece_of(dice, field, record.bytes);
   auto message = whole.raw;
   spoil_bytes_of(dice, field, message);
-  if (put(message, record) && !dice.one_in(4)) seal(record);
-}
-
-/// The number into the field, and into its kin, too, if they are given. The message is sound then.
-void Author::set_number(KeptRecord& record, const Message& whole, std::span<const Field> fields,
-                        std::int64_t number, float part) const {
-  auto message = whole.raw;
-  for (const auto& field : fields) {
-    if (field.place == Place::kPiece) {
-      set_piece(field, record.bytes, std::to_string(number));
-    } else if (field.offset + std::size_t{field.width} <= message.size() && field.width > 0) {
-      const bool is_float = field.encoding == Encoding::kFloatLittle;
-      set_field_value(field, message, is_float ? float_of(number, part) : number);
-    }
-  }
-  if (fields.front().place == Place::kBytes && put(message, record)) seal(record);
-}
-
-/// Of a bus the address is part of a message, though not of the record.
-bool Author::put(Bytes message, KeptRecord& record) {
-  const std::size_t head = record.kind == LinkKind::kBus ? 1 : 0;
-  if (message.size() > record.bytes.size() + head) return false;
-  std::ranges::copy(message.subspan(head), record.bytes.begin());
-  return true;
-}
-
-void Author::seal(KeptRecord& record) const {
-  if (material_.seal == nullptr) return;
-  auto message = record.bytes;
-  const std::size_t head = record.kind == LinkKind::kBus ? 1 : 0;
-  if (head > 0) {
-    const BusAddress address{static_cast<std::uint8_t>(record.id)};
-    message.insert(message.begin(), head_of(write_to(address, {})));
-  }
-  material_.seal(message);
-  std::copy(message.begin() + static_cast<std::ptrdiff_t>(head), message.end(),
-            record.bytes.begin());
+  if (put(message, record) && !dice.one_in(4)) seal(material_, record);
 }
 
 void Author::change_bytes(Dice& dice, Script& script) const {
@@ -347,7 +250,7 @@ void Author::change_some_bytes(Dice& dice, KeptRecord& record) const {
     byte = dice.one_in(2) ? dice.byte()
                           : byte ^ static_cast<std::byte>(1U << dice.number<unsigned>(0, 7));
   }
-  if (dice.one_in(2)) seal(record);
+  if (dice.one_in(2)) seal(material_, record);
 }
 
 /// One message many times, each with another value in one and the same field, and now and then in
@@ -378,7 +281,7 @@ void Author::sweep(Dice& dice, Script& script) const {
   const auto part = some_part(dice);
   const auto vary = [&](KeptRecord& copy) {
     if (!numbers.empty()) {
-      return set_number(copy, messages.front(), numbers, edge_at(edge_place++), part);
+      return set_number(material_, copy, messages.front(), numbers, edge_at(edge_place++), part);
     }
     if (field != nullptr) return spoil_field(dice, copy, messages.front(), *field);
     const auto at = copy.bytes.begin() + byte_place;
@@ -386,7 +289,7 @@ void Author::sweep(Dice& dice, Script& script) const {
       copy.bytes.insert(at, odd_byte(dice));
     } else {
       *at = odd_byte(dice);
-      if (!dice.one_in(4)) seal(copy);
+      if (!dice.one_in(4)) seal(material_, copy);
     }
   };
   // Each of them a few times in a row now and then, as for what a second one does, or an eighth.
@@ -486,25 +389,15 @@ void Author::move_time(Dice& dice, Script& script) const {
 }
 
 void Author::hurry(Dice& dice, Script& script) const {
-  const auto longest = std::chrono::microseconds{mostly_few(dice, 0, 20'000)};
-  Duration saved{};
-  Instant last{};
-  for (auto& record : script) {
-    const auto gap = record.time - last;
-    last = record.time;
-    saved += std::max(Duration{}, gap - longest);
-    record.time -= saved;
-  }
+  campaign::hurry(script, std::chrono::microseconds{mostly_few(dice, 0, 20'000)});
 }
 
 /// What cannot be played there is left out, and what is too long ends.
 void Author::fit(Dice& dice, Script& script) const {
-  std::erase_if(script, [&](const KeptRecord& one) {
-    return (one.kind != material_.kind && one.kind != LinkKind::kEvents) ||
-           (is_by_hand(one) && !material_.has_hands);
-  });
+  leave_out_unplayable(material_, script);
   const auto begin = script.empty() ? Instant{} : script.front().time;
   for (auto& record : script) record.time -= begin.time_since_epoch();
+  if (material_.spacing.least > Duration{} && !dice.one_in(3)) hurry(dice, script);
   script = spaced(std::move(script), material_.spacing);
   // Most are short, for what takes long is rare, and time is dear.
   constexpr auto kShortPart = 8;
@@ -523,30 +416,7 @@ void Author::fit(Dice& dice, Script& script) const {
     }
     if (!there.empty()) record.id = there[record.id];
   }
-  if (material_.has_operations) return;
-  // A transaction of its own for each, of a size that adapters take.
-  std::erase_if(script, [](const KeptRecord& one) {
-    const auto wanted = is_sent(one) ? std::ssize(one.bytes) : number_in(one, "n", 0);
-    return one.kind == LinkKind::kBus && (wanted == 0 || wanted > kMostBusBytes);
-  });
-  for (auto& record : script) {
-    const auto goes_on = record.details.find(R"(,"stop":false)");
-    if (goes_on != std::string::npos) record.details.resize(goes_on);
-  }
-}
-
-/// With the epilogue, from whoever sent something last.
-void Author::end(Script& script) const {
-  const auto places = sent_in(script);
-  if (places.empty()) return;
-  auto record = script[places.back()];
-  record.time = script.back().time;
-  for (const auto message : material_.epilogue.messages) {
-    const auto bytes = std::as_bytes(std::span{message});
-    record.time += material_.epilogue.pause;
-    record.bytes.assign(bytes.begin(), bytes.end());
-    script.push_back(record);
-  }
+  make_playable(material_, script);
 }
 
 }  // namespace armjig::campaign

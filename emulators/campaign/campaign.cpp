@@ -13,6 +13,7 @@
 #include "emulators/campaign/cause.hpp"
 #include "emulators/campaign/shrink.hpp"
 #include "emulators/campaign/siblings.hpp"
+#include "emulators/campaign/survey.hpp"
 #include "harness/compare/recording_diff.hpp"
 
 namespace armjig::campaign {
@@ -71,6 +72,7 @@ class Campaign {
         listener_{listener},
         author_{material},
         excuses_{options.excuses} {
+    if (options.begins_with_survey) survey_.emplace(material, options.seed);
     for (const auto& finding : state.findings) excuse(finding);
     state_.causes = causes_of(state_.findings).size();
   }
@@ -164,7 +166,9 @@ class Campaign {
   }
 
   [[nodiscard]] Script with_question(const Script& script) const {
-    return joined(spaced(with_ends(script), material_.spacing), material_.harmless, kPause);
+    auto whole = joined(spaced(with_ends(script), material_.spacing), material_.harmless, kPause);
+    if (!material_.are_ends_told) std::ranges::for_each(whole, leave_half_open);
+    return whole;
   }
 
   [[nodiscard]] Outcome<Seen> see(const Script& script) {
@@ -179,8 +183,15 @@ class Campaign {
     return messages_of(seen.heard.target.said, material_.make_dissector);
   }
 
+  /// Those of the survey are shared among all shares, too.
+  [[nodiscard]] Script script_of(std::uint64_t number) const {
+    const auto place = number * options_.share.count + options_.share.index - 1;
+    if (survey_ && place < survey_->size()) return survey_->at(place);
+    return author_.draw(seed_of(options_, number), state_.worthy);
+  }
+
   [[nodiscard]] Outcome<void> play_case(std::uint64_t number) {
-    const auto script = author_.draw(seed_of(options_, number), state_.worthy);
+    const auto script = script_of(number);
     auto seen = see(script);
     ++state_.cases;
     if (!seen) {
@@ -406,6 +417,7 @@ class Campaign {
   CampaignState& state_;
   const CampaignListener& listener_;
   Author author_;
+  std::optional<Survey> survey_;
   Excuses excuses_;
   Excuses excuses_at_first_ = options_.excuses;  ///< without what was found
   Excuses excuses_anyway_ = options_.excuses;    ///< with what shows whatever is done

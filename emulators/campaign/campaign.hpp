@@ -34,6 +34,7 @@ struct CampaignOptions {
   std::size_t most_attempts = 20'000;  ///< at shrinking one finding
   Duration most_shrinking{};           ///< time for one finding, by the wall clock
   bool stops_at_first = false;         ///< finding that is news
+  bool begins_with_survey = false;     ///< chance comes after it, as time is dear
   std::function<bool()> must_stop = [] { return false; };
 };
 

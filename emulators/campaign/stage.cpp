@@ -28,7 +28,7 @@ bool greet(SessionSource& server) {
   constexpr auto kPatience = 100ms;
   const auto port = server.make_port();
   if (!port->connect(port->now() + kPatience)) return false;
-  port->close();
+  port->half_close();
   rest(server, kPatience);
   return true;
 }

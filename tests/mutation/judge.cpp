@@ -12,7 +12,7 @@
 //
 // tells whether so many sessions that consist of nothing but bytes on a link, in virtual time, tell
 // it from the emulator of this program. Prints what they differ in, or "same"; then that again
-// where moments count that are more than 5 ms apart.
+// where moments count that are further apart than `armjig fuzz` lets pass of a live device.
 //
 //   mutation_judge serve DEVICE OBJECT ARGUMENT...
 //
@@ -21,7 +21,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -37,13 +36,12 @@
 #include "cli/program.hpp"
 #include "conformance/run.hpp"
 #include "harness/capture/trace.hpp"
+#include "harness/compare/rules.hpp"
 #include "harness/rig/target.hpp"
 #include "tests/mutation/judged.hpp"
 
 namespace armjig::mutation {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr int kWrongUsage = 2;
 
@@ -125,19 +123,28 @@ Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Tar
   return {};
 }
 
-/// What sessions on a link would show of it, exactly and apart from moments that a link hides; one
-/// that cannot be opened shows that.
-void judge_on_wire(const cli::Device& device, const cli::Device& own, const Target& target,
-                   std::uint64_t count) {
+/// What sessions on a link would show of it, exactly and apart from moments that a live device is
+/// forgiven; one that cannot be opened shows that.
+Outcome<void> judge_on_wire(const cli::Device& device, const cli::Device& own, const Target& target,
+                            std::uint64_t count) {
   constexpr std::uint64_t kSeed = 1;
-  constexpr Duration kMoment = 5ms;
-  for (const auto tolerance : {Duration{}, kMoment}) {
+  const auto live = ComparisonRules::parse(device.live_rules, "the device's live rules");
+  if (!live) return tl::unexpected{live.error()};
+  for (const auto tolerance : {Duration{}, live->time_tolerance}) {
     const auto play = cli::sessions_beside(
-        device, target, own, {.most_attempts = 0, .has_hands = false, .tolerance = tolerance});
+        device, target, own,
+        {.most_attempts = 0, .has_hands = false, .are_ends_told = false, .tolerance = tolerance});
     const auto difference = play(kSeed, count);
     fmt::print("{}\n", difference ? difference->value_or("same") : describe(difference.error()));
     std::fflush(stdout);
   }
+  return {};
+}
+
+int exit_code_of(const Outcome<void>& done) {
+  if (done) return 0;
+  fmt::print(stderr, "{}\n", describe(done.error()));
+  return kWrongUsage;
 }
 
 int serve(const cli::Device& device, char* program, std::span<char*> arguments) {
@@ -165,15 +172,12 @@ int run(std::span<char*> arguments) {
   const auto target = parse_target(arguments[4]);
   if (!target) return kWrongUsage;
   if (std::string_view{arguments[1]} == "wire") {
-    judge_on_wire(device, **found, *target, std::strtoull(arguments[5], nullptr, 10));
-    return 0;
+    return exit_code_of(
+        judge_on_wire(device, **found, *target, std::strtoull(arguments[5], nullptr, 10)));
   }
   const auto tier = std::string_view{arguments[5]} == "quick" ? Tier::kQuick : Tier::kFull;
   const auto folders = arguments.subspan(6);
-  const auto done = judge(device, **found, *target, tier, {folders.begin(), folders.end()});
-  if (done) return 0;
-  fmt::print(stderr, "{}\n", describe(done.error()));
-  return kWrongUsage;
+  return exit_code_of(judge(device, **found, *target, tier, {folders.begin(), folders.end()}));
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "emulators/campaign/script.hpp"
+#include "emulators/sessions/sessions.hpp"
+
+namespace armjig::campaign {
+
+/// What shows in no answer at once, such as where an arm was led, shows in what these are answered
+/// with, or when.
+struct Epilogue {
+  std::span<const std::string_view> messages{};
+  Duration pause{};         ///< between them
+  std::int64_t one_in = 3;  ///< so many scripts ends with them
+};
+
+/// What scripts are made of: all that is known of a device.
+struct Material {
+  LinkKind kind{};  ///< of its link
+  MakeDissector make_dissector{};
+  DrawSession draw_session{};  ///< nullptr: scripts begin with what is harmless
+  /// One harmless exchange. Each case ends with it, as the question whether the device is well.
+  Script harmless;
+  /// Makes lengths and checksums of a message right again, on a bus of one with the byte of the
+  /// address; nullptr: it has none, or nobody can.
+  void (*seal)(std::span<std::byte> message){};
+  std::vector<std::uint32_t> addresses{};  ///< of a bus: who is there
+  /// Leaves out of a script what may not be sent; empty: all may.
+  std::function<void(Script& script)> permit{};
+  bool has_hands = false;      ///< what is beside the link can be done
+  bool has_operations = true;  ///< of a bus: transactions may have any form
+  /// A client that closes is known to have; else only, as over TCP at first, that it says no more.
+  bool are_ends_told = true;
+  Duration longest{};  ///< of a script
+  Spacing spacing{};
+  Epilogue epilogue{};  ///< empty: all shows at once
+};
+
+}  // namespace armjig::campaign

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/survey.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <set>
+#include <utility>
+
+#include "emulators/sessions/sessions.hpp"
+#include "harness/wire/parol6/dissector.hpp"
+#include "harness/wire/parol6/frame.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+using parol6::Command;
+using parol6::CommandFrame;
+
+const Material kBoard{.kind = LinkKind::kStream,
+                      .make_dissector = parol6::make_dissector,
+                      .draw_session = parol6::sessions::draw,
+                      .longest = 20s};
+
+constexpr std::array kCommands{Command::kHome,       Command::kEnable, Command::kDisable,
+                               Command::kClearError, Command::kJog,    Command::kGoTo};
+
+std::vector<Script> all_of(const Survey& survey) {
+  std::vector<Script> scripts;
+  for (std::size_t i = 0; i < survey.size(); ++i) scripts.push_back(survey.at(i));
+  return scripts;
+}
+
+const std::vector<Script>& surveyed() {
+  static const auto kAll = all_of(Survey{kBoard, 1});
+  return kAll;
+}
+
+std::vector<CommandFrame> frames_of(Bytes bytes) {
+  std::vector<CommandFrame> frames;
+  for (; bytes.size() >= parol6::kCommandFrameSize;
+       bytes = bytes.subspan(parol6::kCommandFrameSize)) {
+    frames.push_back(
+        parol6::decode_command(parol6::body_of(bytes.first<parol6::kCommandFrameSize>())));
+  }
+  return frames;
+}
+
+std::vector<CommandFrame> whole_frames_in(const Script& script) {
+  std::vector<CommandFrame> frames;
+  for (const auto& record : script) {
+    if (record.bytes.size() != parol6::kCommandFrameSize) continue;
+    frames.push_back(frames_of(record.bytes).front());
+  }
+  return frames;
+}
+
+TEST(Survey, GivesEachFieldOfACommandTheNumbersBesideWhichComputationsTurn) {
+  std::array<std::set<std::int32_t>, 6> positions;
+  std::set<int> timeouts;
+  for (const auto& script : surveyed()) {
+    for (const auto& frame : whole_frames_in(script)) {
+      if (frame.command != Command::kGoTo) continue;
+      for (std::size_t i = 0; i < 6; ++i) positions.at(i).insert(frame.position.at(i).value);
+      timeouts.insert(frame.timeout);
+    }
+  }
+  for (const auto& of_joint : positions) {
+    for (const auto wanted : {127, 128, -129, 1023, -1024, 0x7F'FFFF, -0x80'0000}) {
+      EXPECT_TRUE(of_joint.contains(wanted)) << wanted;
+    }
+  }
+  EXPECT_EQ(timeouts.size(), 256U);
+}
+
+TEST(Survey, GivesEachCommandAfterEachOtherApartAndInOnePiece) {
+  using Pairs = std::set<std::pair<Command, Command>>;
+  Pairs apart;
+  Pairs in_one_piece;
+  for (const auto& script : surveyed()) {
+    const auto frames = whole_frames_in(script);
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      apart.emplace(frames[i - 1].command, frames[i].command);
+    }
+    for (const auto& record : script) {
+      if (record.bytes.size() != 2 * parol6::kCommandFrameSize) continue;
+      const auto both = frames_of(record.bytes);
+      in_one_piece.emplace(both.front().command, both.back().command);
+    }
+  }
+  for (const auto one : kCommands) {
+    for (const auto other : kCommands) {
+      EXPECT_TRUE(apart.contains({one, other})) << int(one) << ' ' << int(other);
+      EXPECT_TRUE(in_one_piece.contains({one, other})) << int(one) << ' ' << int(other);
+    }
+  }
+}
+
+TEST(Survey, RepeatsEachCommandOftenerThanACounterOfTenBitsCounts) {
+  for (const auto wanted : kCommands) {
+    const auto is_repeated = [wanted](const Script& script) {
+      return std::ranges::count(whole_frames_in(script), wanted, &CommandFrame::command) > 1024;
+    };
+    EXPECT_TRUE(std::ranges::any_of(surveyed(), is_repeated)) << int(wanted);
+  }
+}
+
+TEST(Survey, CutsWhatIsSentToEachSize) {
+  std::set<std::size_t> sizes;
+  for (const auto& script : surveyed()) {
+    for (const auto& record : script) sizes.insert(record.bytes.size());
+  }
+  for (std::size_t size = 1; size <= 140; ++size) EXPECT_TRUE(sizes.contains(size)) << size;
+}
+
+TEST(Survey, IsTheSameForTheSameSeed) {
+  EXPECT_EQ(all_of(Survey{kBoard, 1}), surveyed());
+  EXPECT_NE(all_of(Survey{kBoard, 2}), surveyed());
+}
+
+TEST(Survey, TakesNoLongerThanMayBeAndDoesNothingThatIsForbidden) {
+  auto material = kBoard;
+  material.longest = 2s;
+  material.permit = [](Script& script) {
+    std::erase_if(script, [](const KeptRecord& record) {
+      return std::ranges::count(frames_of(record.bytes), Command::kJog, &CommandFrame::command) > 0;
+    });
+  };
+  for (const auto& script : all_of(Survey{material, 1})) {
+    EXPECT_LE(length_of(script), 2s);
+    for (const auto& frame : whole_frames_in(script)) EXPECT_NE(frame.command, Command::kJog);
+  }
+}
+
+TEST(Survey, IsEmptyOfADeviceThatHasNoSessions) {
+  auto material = kBoard;
+  material.draw_session = nullptr;
+  EXPECT_EQ(Survey(material, 1).size(), 0U);
+}
+
+}  // namespace
+}  // namespace armjig::campaign
