@@ -7,8 +7,8 @@
 
 #include "cli/device.hpp"
 #include "conformance/bench.hpp"
-#include "emulators/campaign/material.hpp"
 #include "emulators/campaign/folder.hpp"
+#include "emulators/campaign/material.hpp"
 #include "emulators/campaign/stage.hpp"
 
 namespace armjig::cli {
