@@ -177,9 +177,7 @@ Script Author::draw(std::uint64_t seed, const std::vector<Script>& worthy) const
   }
   fit(dice, script);
   const auto& epilogue = material_.epilogue;
-  if (!epilogue.messages.empty() && dice.one_in(epilogue.one_in)) {
-    add_epilogue(material_, script);
-  }
+  if (!epilogue.messages.empty() && dice.one_in(epilogue.one_in)) end(script);
   if (material_.permit) material_.permit(script);
   return script;
 }
@@ -397,6 +395,7 @@ void Author::fit(Dice& dice, Script& script) const {
   leave_out_unplayable(material_, script);
   const auto begin = script.empty() ? Instant{} : script.front().time;
   for (auto& record : script) record.time -= begin.time_since_epoch();
+  // Where nothing can be close together, time is dear.
   if (material_.spacing.least > Duration{} && !dice.one_in(3)) hurry(dice, script);
   script = spaced(std::move(script), material_.spacing);
   // Most are short, for what takes long is rare, and time is dear.
@@ -417,6 +416,20 @@ void Author::fit(Dice& dice, Script& script) const {
     if (!there.empty()) record.id = there[record.id];
   }
   make_playable(material_, script);
+}
+
+/// With the epilogue, from whoever sent something last.
+void Author::end(Script& script) const {
+  const auto places = sent_in(script);
+  if (places.empty()) return;
+  auto record = script[places.back()];
+  record.time = script.back().time;
+  for (const auto message : material_.epilogue.messages) {
+    const auto bytes = std::as_bytes(std::span{message});
+    record.time += material_.epilogue.pause;
+    record.bytes.assign(bytes.begin(), bytes.end());
+    script.push_back(record);
+  }
 }
 
 }  // namespace armjig::campaign

@@ -44,6 +44,7 @@ class Author {
   void move_time(Dice& dice, Script& script) const;
   void hurry(Dice& dice, Script& script) const;
   void fit(Dice& dice, Script& script) const;
+  void end(Script& script) const;
 
   const Material& material_;
 };

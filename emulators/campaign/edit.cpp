@@ -124,17 +124,4 @@ void make_playable(const Material& material, Script& script) {
   }
 }
 
-void add_epilogue(const Material& material, Script& script) {
-  const auto places = sent_in(script);
-  if (places.empty()) return;
-  auto record = script[places.back()];
-  record.time = script.back().time;
-  for (const auto message : material.epilogue.messages) {
-    const auto bytes = std::as_bytes(std::span{message});
-    record.time += material.epilogue.pause;
-    record.bytes.assign(bytes.begin(), bytes.end());
-    script.push_back(record);
-  }
-}
-
 }  // namespace armjig::campaign

@@ -60,7 +60,4 @@ void leave_out_unplayable(const Material& material, Script& script);
 /// adapters take.
 void make_playable(const Material& material, Script& script);
 
-/// The epilogue after the script, from whoever sent something last.
-void add_epilogue(const Material& material, Script& script);
-
 }  // namespace armjig::campaign

@@ -64,18 +64,14 @@ KeptRecord as_done(KeptRecord record) {
   return record;
 }
 
-/// The message by its name and by the field that says most of it, one with named values, as a
-/// command has.
+/// The message by its name and by its code, as a command has.
 std::string choice_in(const Message& message) {
-  for (const auto& field : message.fields) {
-    if (field.encoding != Encoding::kCode || field.values.empty()) continue;
-    const auto value = field_value(field, message.raw);
-    const auto named = std::ranges::find(field.values, value, &NamedValue::value);
-    const auto word =
-        named == field.values.end() ? std::to_string(value) : std::string{named->name};
-    return word == message.name ? word : fmt::format("{} {}", message.name, word);
-  }
-  return std::string{message.name};
+  const auto* const code = code_in(message);
+  if (code == nullptr) return std::string{message.name};
+  const auto value = field_value(*code, message.raw);
+  const auto named = std::ranges::find(code->values, value, &NamedValue::value);
+  const auto word = named == code->values.end() ? std::to_string(value) : std::string{named->name};
+  return word == message.name ? word : fmt::format("{} {}", message.name, word);
 }
 
 /// The events of both sides as those of one recording: what is answered comes after what was asked.
@@ -191,6 +187,13 @@ std::vector<Message> messages_in(const KeptRecord& record, Dissector& dissector)
   }
   dissector.feed(Direction::kToDevice, record.time, bytes, messages);
   return messages;
+}
+
+const Field* code_in(const Message& message) {
+  const auto found = std::ranges::find_if(message.fields, [](const Field& field) {
+    return field.encoding == Encoding::kCode && !field.values.empty();
+  });
+  return found == message.fields.end() ? nullptr : &*found;
 }
 
 std::string words_of(const KeptRecord& record, MakeDissector make_dissector) {

@@ -64,6 +64,9 @@ void shift_from(Script& script, std::size_t place, Duration by);
 /// address. Of no bytes: nothing.
 [[nodiscard]] std::vector<Message> messages_in(const KeptRecord& record, Dissector& dissector);
 
+/// The code that says most of a message, as that of a command; nullptr: it has none.
+[[nodiscard]] const Field* code_in(const Message& message);
+
 /// The record in a few words, as in `command jog`.
 [[nodiscard]] std::string words_of(const KeptRecord& record, MakeDissector make_dissector);
 

@@ -23,7 +23,7 @@ void rest(StreamPort& port, Duration time) {
 void rest(SessionSource& server, Duration time) { server.pause(time); }
 void rest(BusPort& port, Duration time) { port.wait_until(port.now() + time); }
 
-/// Whether it is there: a server is when it takes a client.
+/// Whether it is there: a server is when it takes a client, which leaves as a system tells it.
 bool greet(SessionSource& server) {
   constexpr auto kPatience = 100ms;
   const auto port = server.make_port();

@@ -50,6 +50,12 @@ std::vector<std::byte> cut(std::vector<std::byte> bytes, std::size_t size) {
   return bytes;
 }
 
+Script copies(const Script& exchange, int count) {
+  Script body;
+  for (int i = 0; i < count; ++i) add(body, exchange);
+  return body;
+}
+
 Script last_sent(const Script& script, std::size_t count) {
   Script last;
   for (auto one = script.rbegin(); one != script.rend() && last.size() < count; ++one) {
@@ -59,22 +65,14 @@ Script last_sent(const Script& script, std::size_t count) {
   return last;
 }
 
-/// The field that says most of a message: a code.
-const Field* code_in(const Message& message) {
-  const auto found = std::ranges::find_if(message.fields, [](const Field& field) {
-    return field.encoding == Encoding::kCode && !field.values.empty();
-  });
-  return found == message.fields.end() ? nullptr : &*found;
-}
-
 /// Its name and that of its code; those without a name are of one kind.
 std::string name_of(const Message& message) {
   std::string name{message.name};
-  const auto* const choice = code_in(message);
-  if (choice == nullptr) return name;
+  const auto* const code = code_in(message);
+  if (code == nullptr) return name;
   const auto named =
-      std::ranges::find(choice->values, field_value(*choice, message.raw), &NamedValue::value);
-  return name.append(named == choice->values.end() ? "?" : named->name);
+      std::ranges::find(code->values, field_value(*code, message.raw), &NamedValue::value);
+  return name.append(named == code->values.end() ? "?" : named->name);
 }
 
 }  // namespace
@@ -174,8 +172,8 @@ void Survey::plan_values(std::size_t state) {
       is_one_left = true;
       const auto& setting = kind[state];
       const auto& field = setting.message.fields[number];
-      const bool is_choice = &field == code_in(setting.message);
-      if (!can_choose(setting, field) || (is_choice && &kind != &kinds_.front())) continue;
+      const bool is_code = &field == code_in(setting.message);
+      if (!can_choose(setting, field) || (is_code && &kind != &kinds_.front())) continue;
       cases_.emplace_back(
           [this, &setting, &field] { return whole(setting, values(setting, field)); });
     }
@@ -215,7 +213,8 @@ Script Survey::pairs(const Setting& setting) const {
   Script body;
   std::size_t number = 0;
   for (const auto& kind : kinds_) {
-    const auto& other = kind.front().exchange;
+    auto other = kind.front().exchange;
+    if (material_.kind != LinkKind::kBus) other.front().id = setting.exchange.front().id;
     add(body, setting.back);
     add(body, setting.exchange);
     add(body, other);
@@ -230,19 +229,10 @@ Script Survey::pairs(const Setting& setting) const {
   return body;
 }
 
-Script Survey::some_copies(const Setting& setting) const {
-  constexpr int kCopies = 20;
-  Script body;
-  for (int i = 0; i < kCopies; ++i) add(body, setting.exchange);
-  return body;
-}
+Script Survey::some_copies(const Setting& setting) const { return copies(setting.exchange, 20); }
 
-Script Survey::many_copies(const Setting& setting) const {
-  constexpr int kCopies = 1200;
-  Script body;
-  for (int i = 0; i < kCopies; ++i) add(body, setting.exchange);
-  return body;
-}
+/// More than a counter of ten bits counts.
+Script Survey::many_copies(const Setting& setting) const { return copies(setting.exchange, 1200); }
 
 Script Survey::lengths(const Setting& setting) const {
   constexpr std::size_t kMost = 40;
