@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "emulators/sessions/sessions.hpp"
@@ -20,9 +21,14 @@ using namespace std::chrono_literals;
 using parol6::Command;
 using parol6::CommandFrame;
 
+/// One session in four: to read all of them takes seconds without optimisation.
+std::string draw_few(const Roll& roll) {
+  return roll.seed % 4 == 0 ? parol6::sessions::draw(roll) : std::string{};
+}
+
 const Material kBoard{.kind = LinkKind::kStream,
                       .make_dissector = parol6::make_dissector,
-                      .draw_session = parol6::sessions::draw,
+                      .draw_session = draw_few,
                       .longest = 20s};
 
 constexpr std::array kCommands{Command::kHome,       Command::kEnable, Command::kDisable,
