@@ -76,7 +76,7 @@ struct FuzzOptions {
   std::string colour;
 };
 
-constexpr Duration kLongestLive = std::chrono::seconds{6};
+constexpr Duration kLongestLive = std::chrono::seconds{8};
 constexpr auto kShrinkingEmulated = std::chrono::seconds{30};
 constexpr auto kShrinkingLive = std::chrono::seconds{60};
 constexpr std::size_t kCasesBetweenResetsLive = 8;
@@ -257,6 +257,7 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
                                          : kLongestEmulated;
   auto material = material_of(run.device, how, run.model, length);
   if (!material) return report(material.error());
+  material->rules = *rules;
   const auto hand = hand_of(run.options.hands);
   auto stage =
       stage_of(run.device, how, run.device, run.model, hand, kHorizon + 2 * rules->time_tolerance);

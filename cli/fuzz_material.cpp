@@ -151,6 +151,14 @@ auto setup_of(const Device& device, const Kind& kind, const RigOptions& how, con
   return setup;
 }
 
+/// What the device on an emulated stage says to a script.
+auto rehearsal_on(const std::shared_ptr<campaign::Stage>& stage) {
+  return [stage](const Script& script) {
+    const auto heard = stage->reset().and_then([&] { return stage->play(script); });
+    return heard ? heard->target.said : std::vector<KeptRecord>{};
+  };
+}
+
 /// `complete(kind, setup)` adds to what all stages have.
 template <class Complete>
 std::unique_ptr<campaign::Stage> stage_with(const Device& device, const RigOptions& how,
@@ -197,6 +205,7 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
         if (!how.target.is_emulated()) {
           material.permit = permit_of(kind.make_judge, how.permissions);
           material.epilogue.one_in = kEpilogueLive;
+          material.rehearse = rehearsal_on(stage_alone(device, model, {}, 1));
         }
         return material;
       },

@@ -31,7 +31,6 @@ field = [
   {name = "angle", tolerance = 0.5},
   {name = "current", ignore = true},
   {name = "applied_voltage", ignore = true},
-  {name = "programming_status", ignore = true},
 ]
 )";
 

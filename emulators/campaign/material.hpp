@@ -10,6 +10,7 @@
 
 #include "emulators/campaign/script.hpp"
 #include "emulators/sessions/sessions.hpp"
+#include "harness/compare/rules.hpp"
 
 namespace armjig::campaign {
 
@@ -41,6 +42,10 @@ struct Material {
   Duration longest{};  ///< of a script
   Spacing spacing{};
   Epilogue epilogue{};  ///< empty: all shows at once
+  /// What a sound device that is as new says to a script, without waiting for it; empty: nobody
+  /// knows.
+  std::function<std::vector<KeptRecord>(const Script& script)> rehearse;
+  ComparisonRules rules{};  ///< what is let pass of what it says
 };
 
 }  // namespace armjig::campaign

@@ -141,6 +141,82 @@ TEST(Survey, TakesNoLongerThanMayBeAndDoesNothingThatIsForbidden) {
   }
 }
 
+/// A device of which `tell` says, of all that it got, what shows.
+Material with_rehearsal(std::byte (*tell)(const std::vector<CommandFrame>& frames)) {
+  auto material = kBoard;
+  material.rehearse = [tell](const Script& script) {
+    return std::vector<KeptRecord>{
+        {.time = Instant::max(), .bytes = {tell(whole_frames_in(script))}}};
+  };
+  return material;
+}
+
+TEST(Survey, LooksAtAMessageWhereItDoesMost) {
+  // A jog shows right after a command to go home only.
+  const auto material = with_rehearsal([](const std::vector<CommandFrame>& frames) {
+    std::uint8_t shown = 0;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      if (frames[i].command == Command::kJog && frames[i - 1].command == Command::kHome) ++shown;
+    }
+    return std::byte{shown};
+  });
+  for (const auto& script : all_of(Survey{material, 1})) {
+    const auto frames = whole_frames_in(script);
+    const auto jogs = std::ranges::search_n(frames, 20, Command::kJog, {}, &CommandFrame::command);
+    if (jogs.empty()) continue;
+    ASSERT_NE(jogs.begin(), frames.begin());
+    EXPECT_EQ(std::prev(jogs.begin())->command, Command::kHome);
+    break;
+  }
+}
+
+TEST(Survey, TriesWhatMattersBeforeWhatDoesNot) {
+  const auto material = with_rehearsal([](const std::vector<CommandFrame>& frames) {
+    std::uint8_t shown = 0;
+    for (const auto& frame : frames) {
+      if (frame.command == Command::kGoTo) {
+        shown = static_cast<std::uint8_t>(frame.position[4].value & 0xFF);
+      }
+    }
+    return std::byte{shown};
+  });
+  const auto scripts = all_of(Survey{material, 1});
+  const auto first_with = [&](std::size_t joint) {
+    return std::ranges::find_if(scripts, [joint](const Script& script) {
+      std::set<std::int32_t> goals;
+      for (const auto& frame : whole_frames_in(script)) {
+        if (frame.command == Command::kGoTo) goals.insert(frame.position.at(joint).value);
+      }
+      return goals.size() > 20;
+    });
+  };
+  EXPECT_LT(first_with(4) - scripts.begin(), first_with(0) - scripts.begin());
+}
+
+TEST(Survey, WatchesEachCommandAfterEachOtherForLongerThanRulesLetAnswersBeLate) {
+  std::set<std::pair<Command, Command>> watched;
+  for (const auto& script : surveyed()) {
+    for (auto begin = script.begin(); begin != script.end();) {
+      auto end = std::ranges::find_if(
+          begin, script.end(), [&](const auto& record) { return record.bytes != begin->bytes; });
+      const bool is_whole = begin->bytes.size() == parol6::kCommandFrameSize;
+      if (begin != script.begin() && is_whole && std::prev(end)->time - begin->time > 150ms) {
+        const auto before = frames_of(std::prev(begin)->bytes);
+        if (!before.empty()) {
+          watched.emplace(before.back().command, frames_of(begin->bytes).front().command);
+        }
+      }
+      begin = end;
+    }
+  }
+  for (const auto one : kCommands) {
+    for (const auto other : kCommands) {
+      const bool is_same = one == other;
+      EXPECT_TRUE(is_same || watched.contains({one, other})) << int(one) << ' ' << int(other);
+    }
+  }
+}
+
 TEST(Survey, IsEmptyOfADeviceThatHasNoSessions) {
   auto material = kBoard;
   material.draw_session = nullptr;
