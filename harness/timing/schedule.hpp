@@ -32,6 +32,14 @@ class PeriodicSchedule {
     return {deadline, now - deadline, static_cast<std::uint64_t>(skipped)};
   }
 
+  /// Skips what came due while the cycle was served, which would be served in a burst. How many.
+  std::uint64_t skip_until(Instant now) noexcept {
+    if (now < next_) return 0;
+    const auto skipped = (now - next_) / period_ + 1;
+    next_ += skipped * period_;
+    return static_cast<std::uint64_t>(skipped);
+  }
+
  private:
   Instant next_;
   Duration period_;

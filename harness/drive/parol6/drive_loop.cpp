@@ -22,7 +22,10 @@ Result<void> DriveLoop::cycle() {
   const auto cycle = schedule_.begin(port_.now());
   skipped_ += cycle.skipped;
   jitter_.record(cycle.lateness);
-  return port_.write(drive_.tick(port_.now()));
+  auto written = port_.write(drive_.tick(port_.now()));
+  // A joint at top speed must not be sent two ways of a period in less than two (parol6.goto.law).
+  skipped_ += schedule_.skip_until(port_.now());
+  return written;
 }
 
 }  // namespace armjig::parol6::drive

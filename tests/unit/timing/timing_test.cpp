@@ -30,6 +30,17 @@ TEST(PeriodicSchedule, CountsDeadlinesThatPassedByAndDoesNotMakeUpForThem) {
   EXPECT_EQ(schedule.next(), at(40ms));
 }
 
+TEST(PeriodicSchedule, SkipsWhatCameDueWhileACycleWasServed) {
+  PeriodicSchedule schedule{at(0ms), 10ms};
+  schedule.begin(at(0ms));
+  EXPECT_EQ(schedule.skip_until(at(9ms)), 0U);
+  EXPECT_EQ(schedule.next(), at(10ms));
+  EXPECT_EQ(schedule.skip_until(at(10ms)), 1U);
+  EXPECT_EQ(schedule.next(), at(20ms));
+  EXPECT_EQ(schedule.skip_until(at(45ms)), 3U);
+  EXPECT_EQ(schedule.next(), at(50ms));
+}
+
 TEST(LatencyHistogram, IsEmptyAtFirst) {
   const LatencyHistogram histogram;
   EXPECT_EQ(histogram.count(), 0U);
