@@ -34,6 +34,22 @@ void half_close(ServerBench& server) {
   server.expect_end();
 }
 
+void say_while_waiting(ServerBench& server, std::string_view text) {
+  server.as(1);
+  server.connect();
+  server.say(text);
+}
+
+void expect_next_served(ServerBench& server, void (*end)(ServerBench& server)) {
+  say_while_waiting(server, "EStop");
+  server.as(0);
+  end(server);
+  server.as(1);
+  server.about("the client that waited");
+  server.expect(Event::kAccepted);
+  server.accept("EStop");
+}
+
 void expect_hung(ServerBench& server) {
   server.expect_no_message(std::chrono::milliseconds{2500});
   server.expect_true(!server.answers(), "no answer ever again", "an answer");

@@ -56,6 +56,11 @@ void initialize_at_home(ServerBench& server);
 /// Says a command and ends its sending: the answer comes, and the end.
 void half_close(ServerBench& server);
 
+/// A second client connects and speaks while the first is served.
+void say_while_waiting(ServerBench& server, std::string_view text);
+/// Such a one is served once the first has ended its connection in this way.
+void expect_next_served(ServerBench& server, void (*end)(ServerBench& server));
+
 void expect_hung(ServerBench& server);
 
 /// A case that begins where its state can be entered; with motion it is not quick.

@@ -9,13 +9,6 @@ void connect_anew(ServerBench& server) {
   server.connect();
 }
 
-/// By a second client, while the first is served.
-void say_while_waiting(ServerBench& server, std::string_view text) {
-  server.as(1);
-  server.connect();
-  server.say(text);
-}
-
 constexpr Clause kConnectionClauses[] = {
     must("kinovazed.connection.silent-start",
          "Nothing is sent because somebody connects: the first message is a heartbeat.",
@@ -123,6 +116,20 @@ constexpr Clause kConnectionClauses[] = {
            server.as(1);
            server.expect(Event::kAccepted);
          }),
+    variant("pieces",
+            look("Two commands of a waiting client, one after the other and cut, are answered.",
+                 [](ServerBench& server) {
+                   say_while_waiting(server, "EStop");
+                   server.pause(50ms);
+                   server.send("ESt");
+                   server.pause(50ms);
+                   server.say("op");
+                   server.as(0);
+                   server.leave();
+                   server.as(1);
+                   server.expect(Event::kAccepted);
+                   server.expect(Event::kAccepted);
+                 })),
 
     must("kinovazed.connection.waiting-closed",
          "What a waiting client has sent is carried out also if it has closed meanwhile.",
@@ -160,11 +167,33 @@ constexpr Clause kConnectionClauses[] = {
              server.accept("EStop");
            }
          }),
+    variant("next", look("One that waits when another resets is answered.",
+                         [](ServerBench& server) {
+                           expect_next_served(server, [](ServerBench& one) { one.throw_away(); });
+                         })),
 
     must("kinovazed.connection.half-close",
          "Complete lines before a half-close are served and answered; then the server closes.",
          "server, recording connection-half-close"),
     look("EStop and a half-close give Accepted and the end.", on<half_close>),
+    variant("next", look("One that waits when another half-closes is answered.",
+                         [](ServerBench& server) { expect_next_served(server, half_close); })),
+    variant("while-waiting",
+            look("A client that half-closed while it waited is answered, and then the next one.",
+                 [](ServerBench& server) {
+                   say_while_waiting(server, "EStop");
+                   server.finish_sending();
+                   server.as(2);
+                   server.connect();
+                   server.say("EStop");
+                   server.as(0);
+                   server.leave();
+                   server.as(1);
+                   server.expect(Event::kAccepted);
+                   server.expect_end();
+                   server.as(2);
+                   server.expect(Event::kAccepted);
+                 })),
 
     must(
         "kinovazed.connection.half-close-unfinished",

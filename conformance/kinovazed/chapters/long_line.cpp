@@ -86,6 +86,13 @@ constexpr Clause kLongLineClauses[] = {
            server.send(padded(1152) + "\n");
            server.expect_end();
          }),
+    variant("next", look("One that waits when another's line is too long is answered.",
+                         [](ServerBench& server) {
+                           expect_next_served(server, [](ServerBench& one) {
+                             one.send(junk(1152));
+                             one.expect_end();
+                           });
+                         })),
 
     must("kinovazed.line.behind-endless",
          "Behind a line that was too long the next client is served from its first line on.",
