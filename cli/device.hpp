@@ -89,6 +89,9 @@ struct FuzzEntry {
   /// How long after a message began the device may still be busy with it, where what comes
   /// meanwhile changes what it makes of it: live nobody knows whether it does; nullptr: never.
   Duration (*works_on)(Bytes message){};
+  /// Whether what comes of a message depends on more than answers tell, such as how far a joint is
+  /// from its switch or where a node is in its tick: live it is not watched. nullptr: of none.
+  bool (*strays)(Bytes message){};
   /// With which cases end now and then, where the device does not show at once where it was led.
   campaign::Epilogue epilogue{};
   /// The machines that `--learn` learns; empty: none.

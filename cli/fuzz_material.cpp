@@ -189,6 +189,7 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
                           .harmless = {},
                           .seal = device.fuzz.seal,
                           .addresses = addresses_on(rig->port()),
+                          .strays = device.fuzz.strays,
                           .has_hands = how.target.is_emulated(),
                           .has_operations = how.target.is_emulated(),
                           .longest = longest,

@@ -57,6 +57,9 @@ Duration works_on(Bytes message) {
   return is_programming ? kMessage + kSlowTick : Duration{};
 }
 
+/// A loop with other parameters ticks elsewhere, and moves when it ticks.
+bool strays(Bytes message) { return works_on(message) > Duration{}; }
+
 }  // namespace
 
 cli::Device device() {
@@ -82,7 +85,7 @@ cli::Device device() {
                      .touches_of = replay::touches_of},
           .draw_session = sessions::draw,
           .live_rules = kLiveRules,
-          .fuzz = {.seal = seal, .works_on = works_on, .machines = machines()},
+          .fuzz = {.seal = seal, .works_on = works_on, .strays = strays, .machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures,
           .commands = {cli::add_i2c, cli::add_morap}};

@@ -12,6 +12,7 @@
 #include "harness/latency/parol6_probe.hpp"
 #include "harness/rig/parol6_judge.hpp"
 #include "harness/wire/parol6/dissector.hpp"
+#include "harness/wire/parol6/frame.hpp"
 
 namespace armjig::parol6 {
 namespace {
@@ -28,6 +29,13 @@ field = [
   {name = "position.j5", tolerance = 1000}, {name = "position.j6", tolerance = 1000},
 ]
 )";
+
+/// Where a joint is, a campaign knows to a thousand steps, and so not when it meets its switch.
+bool strays(Bytes message) {
+  if (message.size() != kCommandFrameSize) return false;
+  const auto code = decode_command(body_of(message.first<kCommandFrameSize>())).command;
+  return code == Command::kHome || code == Command::kDemo;
+}
 
 }  // namespace
 
@@ -55,7 +63,7 @@ cli::Device device() {
                      .touches_of = replay::touches_of},
           .draw_session = sessions::draw,
           .live_rules = kLiveRules,
-          .fuzz = {.machines = machines()},
+          .fuzz = {.strays = strays, .machines = machines()},
           .dissection = dissection,
           .figures = shadow::figures,
           .watch_rate = 100,

@@ -35,6 +35,8 @@ struct Material {
   std::vector<std::uint32_t> addresses{};  ///< of a bus: who is there
   /// Leaves out of a script what may not be sent; empty: all may.
   std::function<void(Script& script)> permit{};
+  /// Whether what comes of a message depends on more than answers tell; nullptr: of none.
+  bool (*strays)(Bytes message){};
   bool has_hands = false;      ///< what is beside the link can be done
   bool has_operations = true;  ///< of a bus: transactions may have any form
   /// A client that closes is known to have; else only, as over TCP at first, that it says no more.

@@ -63,21 +63,15 @@ Rehearsal::Said Rehearsal::said_after(const Script& before, const Script& exchan
   return all;
 }
 
-std::size_t Rehearsal::evolution_of(const Script& script, const Script& question,
-                                    const ComparisonRules& rules) const {
+bool Rehearsal::goes_on_after(const Script& script, const Script& question) const {
   auto permitted = script;
   if (material_.permit) material_.permit(permitted);
-  if (!is_possible() || permitted.size() < script.size()) return 0;
-  auto fewest = std::numeric_limits<std::size_t>::max();
-  for (const auto& past : pasts_) {
-    fewest = std::min(fewest, evolution_after(past, script, question, rules));
-    if (fewest == 0) break;
-  }
-  return fewest;
+  if (!is_possible() || permitted.size() < script.size()) return false;
+  return std::ranges::all_of(pasts_,
+                             [&](const Script& past) { return goes_on(past, script, question); });
 }
 
-std::size_t Rehearsal::evolution_after(const Script& past, const Script& script,
-                                       const Script& question, const ComparisonRules& rules) const {
+bool Rehearsal::goes_on(const Script& past, const Script& script, const Script& question) const {
   auto asked = joined(past, script, kStep);
   std::array<Instant, 4> begins;  // the last is asked so that all before it is heard
   for (auto& begin : begins) {
@@ -95,11 +89,10 @@ std::size_t Rehearsal::evolution_after(const Script& past, const Script& script,
   const auto changes_after = [&](std::size_t i) {
     const auto before = messages_of(said.at(i), material_.make_dissector);
     const auto after = messages_of(said.at(i + 1), material_.make_dissector);
-    std::size_t count = 0;
-    for (const auto& difference : diff(before, after, rules)) count += difference.what.size();
-    return count;
+    const auto all = diff(before, after, material_.rules);
+    return std::ranges::any_of(all, [](const auto& one) { return !one.what.empty(); });
   };
-  return std::min(changes_after(0), changes_after(1));
+  return changes_after(0) && changes_after(1);
 }
 
 std::string Rehearsal::last_said(const Script& script) const {

@@ -10,8 +10,6 @@
 
 namespace armjig::campaign {
 
-/// Between two things that are done.
-inline constexpr Duration kStep = std::chrono::milliseconds{3};
 /// After that time what moves is under way.
 inline constexpr Duration kSpeedUp = std::chrono::milliseconds{60};
 /// What is said for so long is not taken for what is said before and after, as far as rules let
@@ -39,19 +37,18 @@ class Rehearsal {
   [[nodiscard]] Said said_after(const Script& before, const Script& exchange,
                                 const Script& questions) const;
 
-  /// Fields that change, and change again, after the script, by the rules; the fewest of any past.
-  /// The question is asked again and again. None of a script that is not permitted.
-  [[nodiscard]] std::size_t evolution_of(const Script& script, const Script& question,
-                                         const ComparisonRules& rules) const;
+  /// Whether something that is said goes on changing after the script, more than `Material::rules`
+  /// let pass, whatever came before; the question is asked again and again. Not after a script that
+  /// is not permitted.
+  [[nodiscard]] bool goes_on_after(const Script& script, const Script& question) const;
 
   /// The name of the last message that is said to the script alone.
   [[nodiscard]] std::string last_said(const Script& script) const;
 
  private:
   [[nodiscard]] std::vector<KeptRecord> heard(const Script& script) const;
-  [[nodiscard]] std::size_t evolution_after(const Script& past, const Script& script,
-                                            const Script& question,
-                                            const ComparisonRules& rules) const;
+  [[nodiscard]] bool goes_on(const Script& past, const Script& script,
+                             const Script& question) const;
 
   const Material& material_;
   std::vector<Script> pasts_;

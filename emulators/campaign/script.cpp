@@ -107,6 +107,19 @@ Duration length_of(const Script& script) noexcept {
   return script.empty() ? Duration{} : script.back().time.time_since_epoch();
 }
 
+void add(Script& script, KeptRecord record, Duration pause) {
+  record.time = script.empty() ? Instant{} : script.back().time + pause;
+  script.push_back(std::move(record));
+}
+void add(Script& script, const Script& more) {
+  for (const auto& record : more) add(script, record);
+}
+
+Script to(std::uint32_t address, Script script) {
+  for (auto& record : script) record.id = address;
+  return script;
+}
+
 Script joined(Script script, const Script& more, Duration pause) {
   const auto begin = script.empty() ? Duration{} : length_of(script) + pause;
   for (auto record : more) {

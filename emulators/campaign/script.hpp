@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -24,6 +25,16 @@ using Script = std::vector<KeptRecord>;
 
 /// When its last record is; 0 for none.
 [[nodiscard]] Duration length_of(const Script& script) noexcept;
+
+/// Between two things that are done one after the other.
+inline constexpr Duration kStep = std::chrono::milliseconds{3};
+
+/// At the end of a script that is written record by record; the first is at its beginning.
+void add(Script& script, KeptRecord record, Duration pause = kStep);
+void add(Script& script, const Script& more);
+
+/// The same, all of it to the device there.
+[[nodiscard]] Script to(std::uint32_t address, Script script);
 
 /// `more` after `script`, `pause` later.
 [[nodiscard]] Script joined(Script script, const Script& more, Duration pause);

@@ -193,11 +193,13 @@ TEST(Survey, TriesWhatMattersBeforeWhatDoesNot) {
   EXPECT_LT(first_with(4) - scripts.begin(), first_with(0) - scripts.begin());
 }
 
-TEST(Survey, WatchesEachCommandAfterEachOtherForLongerThanRulesLetAnswersBeLate) {
+/// Commands that come again and again for longer than rules let answers be late, and what came
+/// before them.
+std::set<std::pair<Command, Command>> watched_in(const std::vector<Script>& scripts) {
   std::set<std::pair<Command, Command>> watched;
-  for (const auto& script : surveyed()) {
+  for (const auto& script : scripts) {
     for (auto begin = script.begin(); begin != script.end();) {
-      auto end = std::ranges::find_if(
+      const auto end = std::ranges::find_if(
           begin, script.end(), [&](const auto& record) { return record.bytes != begin->bytes; });
       const bool is_whole = begin->bytes.size() == parol6::kCommandFrameSize;
       if (begin != script.begin() && is_whole && std::prev(end)->time - begin->time > 150ms) {
@@ -209,12 +211,29 @@ TEST(Survey, WatchesEachCommandAfterEachOtherForLongerThanRulesLetAnswersBeLate)
       begin = end;
     }
   }
+  return watched;
+}
+
+TEST(Survey, WatchesEachCommandAfterEachOther) {
+  const auto watched = watched_in(surveyed());
   for (const auto one : kCommands) {
     for (const auto other : kCommands) {
       const bool is_same = one == other;
       EXPECT_TRUE(is_same || watched.contains({one, other})) << int(one) << ' ' << int(other);
     }
   }
+}
+
+TEST(Survey, WatchesNothingOfWhichAnswersTellTooLittle) {
+  auto material = kBoard;
+  material.strays = [](Bytes message) {
+    const auto frames = frames_of(message);
+    return !frames.empty() && frames.front().command == Command::kHome;
+  };
+  const auto watched = watched_in(all_of(Survey{material, 1}));
+  EXPECT_TRUE(watched.contains({Command::kEnable, Command::kJog}));
+  EXPECT_FALSE(watched.contains({Command::kHome, Command::kEnable}));
+  EXPECT_FALSE(watched.contains({Command::kEnable, Command::kHome}));
 }
 
 TEST(Survey, IsEmptyOfADeviceThatHasNoSessions) {
