@@ -57,12 +57,13 @@ class Hosted:
         self.device, self.folder = device, pathlib.Path(folder)
         place, restart = DEVICES[device]
         self.inputs, self.answers = self.folder / "inputs", self.folder / "answers"
-        for path in (self.inputs, self.answers):
-            os.mkfifo(path)
-        # Open for both directions, so that nobody waits for the other end, and none of them sees an end.
-        inputs, self.log = (os.open(path, os.O_RDWR) for path in (self.inputs, self.answers))
+        os.mkfifo(self.inputs)
+        # Open for both directions, so that nobody waits for the other end, and it never ends.
+        inputs = os.open(self.inputs, os.O_RDWR)
         command = [ARMJIG, "emulate", device, *(word.format(folder=folder) for word in place), *options]
-        self.process = subprocess.Popen(command, stdin=inputs, stdout=subprocess.PIPE, stderr=self.log, text=True)
+        # No pipe: a server logs each position that it is asked for, and would stand still once nobody took that.
+        with open(self.answers, "wb") as log:
+            self.process = subprocess.Popen(command, stdin=inputs, stdout=subprocess.PIPE, stderr=log, text=True)
         os.close(inputs)
         self.pid = self.folder / "pid"
         self.pid.write_text(f"{self.process.pid}\n")
@@ -83,9 +84,9 @@ class Hosted:
         return line.split()[1]
 
     def input(self, name):
-        """A command for the shell that returns when the device has it, which says so, and a server its log before."""
-        return (f"echo {name} 1 >{self.inputs}; while read -r said; do case $said in *'{name} is 1') break; esac; done "
-                f"<{self.answers}; true")
+        """A command for the shell that returns when the device has it, which says so."""
+        count = f"$(grep -c '{name} is 1$' {self.answers})"
+        return f"had={count}; echo {name} 1 >{self.inputs}; while [ {count} -eq $had ]; do sleep 0.005; done; true"
 
     def script(self, command):
         path = self.folder / "restart"
@@ -106,7 +107,6 @@ class Hosted:
         with contextlib.suppress(ProcessLookupError):
             os.kill(int(self.pid.read_text()), signal.SIGTERM)
         self.process.communicate()
-        os.close(self.log)
 
 
 @contextlib.contextmanager
