@@ -277,6 +277,9 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   if (!run.options.known.empty()) result.facts.emplace_back("known", run.options.known);
   if (is_live)
     result.started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  if (!done && !was_stopped) {
+    result.rows.push_back(row_of_end(std::string{run.device.name}, done.error()));
+  }
   if (signals.has_come()) result.facts.emplace_back("interrupted", "not every case was played");
   auto exit = conclude(run.options, result, *files);
   if (!done && !was_stopped) {

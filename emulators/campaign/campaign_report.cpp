@@ -105,6 +105,15 @@ Report to_report(const std::string& device, const CampaignState& state,
   return report;
 }
 
+ReportRow row_of_end(const std::string& device, const Problem& problem) {
+  ReportRow row;
+  row.verdict = Verdict::kError;
+  row.name = fmt::format("{}.fuzz.end", device);
+  row.summary = "The campaign goes on until its time is over.";
+  row.actual = fmt::format("it ended early: {}", describe(problem));
+  return row;
+}
+
 std::string progress_line(const CampaignState& state) {
   const auto count = state.causes;
   return fmt::format(

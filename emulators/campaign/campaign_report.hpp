@@ -15,6 +15,9 @@ namespace armjig::campaign {
 [[nodiscard]] Report to_report(const std::string& device, const CampaignState& state,
                                const std::function<std::string(const Finding&)>& repeat_of);
 
+/// A campaign that ended before its time, and why: what was not played is not passed.
+[[nodiscard]] ReportRow row_of_end(const std::string& device, const Problem& problem);
+
 /// `1234 cases, 56.7 a second; 12 states, 34 transitions, 56 answers; 1 finding`.
 [[nodiscard]] std::string progress_line(const CampaignState& state);
 

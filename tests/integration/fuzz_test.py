@@ -79,15 +79,25 @@ class Fuzz(unittest.TestCase):
         self.assertIn("not every case was played", process.communicate(timeout=PATIENCE)[0])
         self.assertEqual(process.returncode, 130)
 
-    def test_says_what_differed_before_it_began(self):
+    def live_board(self, *arguments):
         link = self.folder / "board"
-        emulator = subprocess.Popen([ARMJIG, "emulate", "parol6", "--link", link, "--set",
-                                     "fault=zero:gripper.object"], stdout=subprocess.PIPE,
-                                    stdin=subprocess.DEVNULL, text=True)
+        emulator = subprocess.Popen([ARMJIG, "emulate", "parol6", "--link", link, *arguments],
+                                    stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
         self.addCleanup(emulator.stdout.close)
         self.addCleanup(emulator.wait)
         self.addCleanup(emulator.terminate)
         emulator.stdout.readline()
+        return link
+
+    def test_does_not_pass_what_ended_early(self):
+        link = self.live_board("--set", "fault=zero:gripper.object")
+        report = self.folder / "report.json"
+        out = self.fuzz("--target", f"pty:{link}", "--allow", "state", "--restart", "false", "--json", report, code=3)
+        self.assertRegex(out, "ERROR +parol6[.]fuzz[.]end")
+        self.assertEqual(json.loads(report.read_text())["conclusion"], "rig")
+
+    def test_says_what_differed_before_it_began(self):
+        link = self.live_board("--set", "fault=zero:gripper.object")
         # It differs from the beginning, and nobody can start it again.
         out = self.fuzz("--target", f"pty:{link}", "--allow", "state", "--known", KNOWN, "--cases", "3", code=0)
         self.assertRegex(out, "nothing is said of telemetry: .*gripper.object 0")
@@ -119,13 +129,7 @@ class Fuzz(unittest.TestCase):
         self.assertIn("the letters were used up", out)
 
     def test_says_what_it_lacks(self):
-        link = self.folder / "board"
-        emulator = subprocess.Popen([ARMJIG, "emulate", "parol6", "--link", link, "--speed", "20"],
-                                    stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
-        self.addCleanup(emulator.stdout.close)
-        self.addCleanup(emulator.wait)
-        self.addCleanup(emulator.terminate)
-        emulator.stdout.readline()
+        link = self.live_board("--speed", "20")
         out = self.learn("parol6", "--target", f"pty:{link}", "--allow", "all", "--machine", "gripper", code=2)
         self.assertIn("--restart", out)
         self.assertIn("its entry has no alphabet", self.learn("demo", "--target", "emulated:", code=2))
