@@ -219,8 +219,8 @@ class Stalling final : public StreamPort {
   std::vector<std::byte> unread_;
 };
 
-/// What ends a program on an arm behind a guard, whose telemetry comes late, and a write now and
-/// then; empty if nothing does.
+/// What ends a program on a guarded arm whose telemetry comes late, and some writes as well; empty
+/// if nothing does.
 std::string guarded_end(std::string_view lines, std::string_view impairment, Duration stall = {}) {
   using parol6::emulation::Arm;
   auto link = std::make_unique<ImpairedStream>(std::make_unique<MemoryStream<Arm>>(Arm{}),
