@@ -199,7 +199,7 @@ Outcome<std::optional<ReplayHow>> how_of(Devices devices, const CheckOptions& op
     return problem(ErrorCode::kBadValue, "--rules, --allow, --impair",
                    "they are for --target; without it recordings have rules of their own");
   }
-  auto rules = rules_of(options.rules);
+  auto rules = rules_asked_for(options.rules);
   if (!rules) return tl::unexpected{rules.error()};
   auto foreign = foreign_how(devices, {}, {});
   if (!foreign) return tl::unexpected{foreign.error()};

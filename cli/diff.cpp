@@ -227,8 +227,14 @@ std::function<MakeDissector(std::string_view)> dissectors_of(Devices devices) {
   };
 }
 
+Outcome<std::optional<ComparisonRules>> rules_asked_for(const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  return ComparisonRules::read(path);
+}
+
 Outcome<ComparisonRules> rules_of(const std::string& path) {
-  return path.empty() ? Outcome<ComparisonRules>{ComparisonRules{}} : ComparisonRules::read(path);
+  return rules_asked_for(path).map(
+      [](const auto& rules) { return rules.value_or(ComparisonRules{}); });
 }
 
 Outcome<ComparisonRules> rules_beside(const Device& device, const Target& target,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,7 +48,10 @@ struct Compared {
 /// Of all devices there are, for `RecordedMessages`.
 [[nodiscard]] std::function<MakeDissector(std::string_view)> dissectors_of(Devices devices);
 
-/// What may differ; nothing if there is no file. Problems: those of `ComparisonRules::read`.
+/// What the file says; none without one. Problems: those of `ComparisonRules::read`.
+[[nodiscard]] Outcome<std::optional<ComparisonRules>> rules_asked_for(const std::string& path);
+
+/// The same; without a file nothing may differ.
 [[nodiscard]] Outcome<ComparisonRules> rules_of(const std::string& path);
 
 /// What may differ between a target and an emulated device that is led beside it: what the file

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cli/checks.hpp"
@@ -27,9 +28,9 @@ constexpr auto kReplayHelp =
     "With --target it plays the host. Each message leaves at its time. The answers are aligned "
     "with the recorded ones as by "
     "'armjig\n"
-    "diff'; --rules FILE says what may differ, as there. Without it times are compared, too, "
-    "which\n"
-    "only an emulated device in virtual time can meet.\n"
+    "diff'; --rules FILE says what may differ, as there. Without it nothing may beside an "
+    "emulated\n"
+    "device, and beside a real one what 'armjig fuzz' lets pass: times by 100 ms, and more.\n"
     "\n"
     "What goes to a device that is not emulated passes the guard. What the recording needs is "
     "asked\n"
@@ -63,22 +64,23 @@ void print_left_out(const ReplayedRecording& replayed) {
 }
 
 Outcome<ReplayedRecording> play_host_side(Devices devices, const ReplayOptions& options,
-                                          const ComparisonRules& rules, const ForeignHow& foreign) {
+                                          const std::optional<ComparisonRules>& rules,
+                                          const ForeignHow& foreign) {
   auto rig = parse_target_options(options.target);
   if (!rig) return tl::unexpected{rig.error()};
   return replay_recording(devices, options.file, {*std::move(rig), rules, options.speed, foreign});
 }
 
 Outcome<ReplayedRecording> play_device_side(Devices devices, const ReplayOptions& options,
-                                            const ComparisonRules& rules,
+                                            const std::optional<ComparisonRules>& rules,
                                             const ForeignHow& foreign) {
-  return play_recorded_device(
-      devices, options.file,
-      {options.listen, options.comparison.wants_json, rules, options.speed, foreign});
+  return play_recorded_device(devices, options.file,
+                              {options.listen, options.comparison.wants_json,
+                               rules.value_or(ComparisonRules{}), options.speed, foreign});
 }
 
 Exit replay(Devices devices, const ReplayOptions& options) {
-  const auto rules = rules_of(options.comparison.rules);
+  const auto rules = rules_asked_for(options.comparison.rules);
   if (!rules) return report(rules.error());
   const auto foreign = foreign_how(devices, options.foreign, {});
   if (!foreign) return report(foreign.error());

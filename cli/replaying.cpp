@@ -134,9 +134,12 @@ Outcome<ReplayedRecording> replay_session(Devices devices, const KnownSession& k
                                           const std::string& path, const ReplayHow& how,
                                           Compare compare) {
   const auto& [session, device] = known;
+  const auto rules =
+      how.rules ? Outcome<ComparisonRules>{*how.rules} : rules_beside(*device, how.rig.target, {});
+  if (!rules) return tl::unexpected{rules.error()};
   PlayHow play_how{.speed = how.speed,
                    .touches_of = device->replay.touches_of,
-                   .trailing = how.rules.time_tolerance};
+                   .trailing = rules->time_tolerance};
   auto played = std::visit(
       [&](const auto& kind) {
         if (kind.set_up != nullptr && !session.is_of_capture) play_how.lead = Duration{1};
@@ -148,8 +151,8 @@ Outcome<ReplayedRecording> replay_session(Devices devices, const KnownSession& k
   if (!replayed) return replayed;
   replayed->left_out = std::move(played->left_out);
   if (compare == Compare::kNo) return replayed;
-  replayed->found = diff(replayed->expected, replayed->actual, how.rules);
-  forgive_ends(session, *played, how.rules.time_tolerance, replayed->found);
+  replayed->found = diff(replayed->expected, replayed->actual, *rules);
+  forgive_ends(session, *played, rules->time_tolerance, replayed->found);
   return replayed;
 }
 

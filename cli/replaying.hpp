@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@ namespace armjig::cli {
 /// How the host's side of a recording is played, and what may differ then.
 struct ReplayHow {
   RigOptions rig;
-  ComparisonRules rules;
-  double speed = 1;  ///< 2: in half the time
+  std::optional<ComparisonRules> rules;  ///< none: those of `rules_beside` the target
+  double speed = 1;                      ///< 2: in half the time
   ForeignHow foreign;
 };
 

@@ -9,8 +9,7 @@ WHAT is one of
   known  10 minutes side by side without these files: what is found, to be compared with what is known; something is
 
 Each device is on its kind of port: a pseudo-terminal, TCP, a virtual I2C bus. It is started again by its own input, or a
-board's program is. Whether a finding is of the defect, `replay` on a sound device tells; it is stricter than campaigns, so
-on a busy machine a long true one may be called FALSE."""
+board's program is. Whether a finding is of the defect, `replay` on a sound device tells, under the rules of campaigns."""
 
 import concurrent.futures
 import contextlib
@@ -142,8 +141,10 @@ def shows(one, finding):
     for _ in range(3):
         subprocess.run(["sh", "-c", one.restart], check=True)
         done = subprocess.run([ARMJIG, "replay", finding, "--target", one.target, "--allow", "all"],
-                              capture_output=True, check=False, env=one.environment)
-        if done.returncode != 1:
+                              capture_output=True, text=True, check=False, env=one.environment)
+        if done.returncode not in (0, 1):
+            raise RuntimeError(done.stderr)
+        if done.returncode == 0:
             return False
     return True
 

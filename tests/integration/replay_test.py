@@ -145,6 +145,26 @@ class Replay(unittest.TestCase):
         self.run_armjig("replay", self.record("kinovazed", 8), "--target", target, "--rules",
                         self.rules)
 
+    def test_without_rules_a_real_device_may_be_late_and_not_wrong(self):
+        target = self.emulate("kinovazed", "--tcp", "0")
+        file = self.record("kinovazed", 8)
+        done = subprocess.run([ARMJIG, "replay", file, "--target", target, "--json"], capture_output=True,
+                              text=True, check=False, stdin=subprocess.DEVNULL, timeout=PATIENCE)
+        # To the nanosecond each would differ; on a busy machine few may, by the 100 ms that are let pass.
+        self.assertLess(len(json.loads(done.stdout)["differences"]), 3, done.stdout)
+        wrong = self.changed(file, "from_device", b"Heartbeat".hex(), b"heartbeat".hex())
+        done = self.run_armjig("replay", wrong, "--target", target, code=1)
+        self.assertIn("different", done.stdout)
+
+    def test_a_corpus_on_a_real_device_is_judged_as_a_replay(self):
+        target = self.emulate("kinovazed", "--tcp", "0")
+        corpus = self.folder / "corpus"
+        corpus.mkdir()
+        self.record("kinovazed", 8).rename(corpus / "idle.jsonl")
+        done = subprocess.run([ARMJIG, "captures", "check", corpus, "--target", target], capture_output=True,
+                              text=True, check=False, stdin=subprocess.DEVNULL, timeout=PATIENCE)
+        self.assertLess(done.stdout.count("time"), 3, done.stdout)
+
     def test_a_virtual_bus(self):
         bus = self.folder / "bus.toml"
         bus.write_text("[[node]]\nid = 2\n")
