@@ -78,7 +78,7 @@ struct FuzzOptions {
 
 constexpr Duration kLongestLive = std::chrono::seconds{8};
 constexpr auto kShrinkingEmulated = std::chrono::seconds{30};
-constexpr auto kShrinkingLive = std::chrono::seconds{60};
+constexpr auto kShrinkingLive = std::chrono::minutes{5};
 constexpr std::size_t kCasesBetweenResetsLive = 8;
 /// All that a run is told, read.
 struct FuzzRun {

@@ -3,7 +3,8 @@
 """`armjig fuzz` on hosted devices, in real time: live_fuzz_soak.py ARMJIG SOURCE WHAT [DEVICE[:DEFECT]...]
 
 WHAT is one of
-  rare   each of the defects that suites do not see (rare_defects_soak.py) is found within five minutes
+  rare   each of the defects that suites do not see (rare_defects_soak.py) is found within five minutes, and shrunk
+         within five more to at most 3 records more than the shortest that is known
   sound  campaigns of 20 minutes side by side, with the files of known defects: no finding, and the emulators do not
          grow by a mebibyte
   known  10 minutes side by side without these files: what is found, to be compared with what is known; something is
@@ -30,6 +31,8 @@ from rare_defects import SHORTEST
 ARMJIG, SOURCE, WHAT = sys.argv[1:4]
 CHOSEN = sys.argv[4:]
 RARE_SECONDS = 300
+SHRINKING_SECONDS = 300
+MOST_SURPLUS = 3
 SOUND_SECONDS = 1200
 KNOWN_SECONDS = 600
 WARM_UP = 120  # seconds, in which memory is used for the first time
@@ -159,17 +162,22 @@ def find_rare(device, name):
     with hosted(device, "--set", f"fault=rare:{name}") as one:
         report = one.folder / "report.json"
         done = one.campaign(report, "--restart", one.restart, *known_of(device), "--max-time",
-                            str(RARE_SECONDS), "--fail-fast")
+                            str(RARE_SECONDS + SHRINKING_SECONDS), "--fail-fast")
         rows = rows_in(report, done)
         found = failed(rows)
         if not found:
             print(f"{device} {name}: not found; {rows[0]['summary']}; {load()}", flush=True)
             return f"{device} {name}: not found"
         seconds, size = re.search(r"([0-9.]+) s after.*?([0-9]+) after shrinking", found[0]["evidence"]).groups()
+        most = SHORTEST[device][name] + MOST_SURPLUS
         of_it = is_real(device, next(iter((one.folder / "out" / "findings").glob("*.jsonl"))))
-        print(f"{device} {name}: {seconds} s, {size} records{'' if of_it else ', FALSE'}; "
+        print(f"{device} {name}: {seconds} s, {size} records of at most {most}{'' if of_it else ', FALSE'}; "
               f"{found[0]['summary'][-300:]}; {load()}", flush=True)
-        return None if of_it else f"{device} {name}: a sound device shows what was found"
+        if not of_it:
+            return f"{device} {name}: a sound device shows what was found"
+        if float(seconds) > RARE_SECONDS:
+            return f"{device} {name}: found after {seconds} s"
+        return None if int(size) <= most else f"{device} {name}: {size} records, {most} at most"
 
 
 def is_chosen(device, name=""):

@@ -6,16 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "conformance/kinovazed/suite.hpp"
-#include "conformance/morap/suite.hpp"
-#include "conformance/parol6/suite.hpp"
 namespace armjig {
 namespace {
 
@@ -584,104 +578,6 @@ TEST(ConformanceRun, ReportsWaiversThatExcuseNothingInAFullRun) {
   const std::vector<Waiver> waivers{{"n.pass", "not needed any more", {}}};
   EXPECT_THAT(verdicts(run("", {.waivers = waivers})), testing::Contains("n.pass.waived error"));
   EXPECT_THAT(verdicts(run("n.pass", {.waivers = waivers})), ElementsAre("n.pass pass"));
-}
-
-std::set<std::string> names(const std::vector<const Case*>& cases) {
-  std::set<std::string> names;
-  for (const auto* one : cases) names.insert(name_of(*one));
-  return names;
-}
-
-TEST(ConformanceSelection, ShardsHaveEveryCaseOnce) {
-  const auto all = select(kSuite, Profile::kFirmware, {});
-  for (const std::size_t count : {1U, 2U, 3U, 5U, 40U}) {
-    std::size_t total = 0;
-    std::set<std::string> seen;
-    for (std::size_t index = 1; index <= count; ++index) {
-      const auto part = select(kSuite, Profile::kFirmware, {.shard = {index, count}});
-      total += part.size();
-      seen.merge(names(part));
-    }
-    EXPECT_EQ(total, all.size()) << count;
-    EXPECT_EQ(seen, names(all)) << count;
-  }
-}
-
-TEST(ConformanceSelection, LeavesOutWhatTakesLongInTheQuickTier) {
-  const auto quick = names(select(kSuite, Profile::kFirmware, {.tier = Tier::kQuick}));
-  EXPECT_FALSE(quick.contains("n.quiet"));
-  EXPECT_TRUE(quick.contains("n.pass"));
-}
-
-TEST(ConformanceSelection, TakesWhatSafetyRestsOnFirstAndInEveryTier) {
-  constexpr std::array<std::string_view, 2> kVital{"n.beyond.b", ".quiet"};
-  const Suite suite{"n", "7", kChapters, kStarts, {}, {}, kVital};
-  const auto place = [](const auto& cases, std::string_view name) {
-    return std::ranges::find(cases, name, [](const Case* one) { return name_of(*one); }) -
-           cases.begin();
-  };
-  for (const auto tier : {Tier::kQuick, Tier::kFull}) {
-    const auto cases = select(suite, Profile::kFirmware, {.tier = tier});
-    EXPECT_EQ(place(cases, "n.quiet"), 0);
-    EXPECT_LT(place(cases, "n.beyond.b"), place(cases, "n.beyond.a"));
-    EXPECT_LT(place(cases, "n.too"), place(cases, "n.beyond.b"));
-  }
-}
-
-/// A piece of a name that no case has any longer would be no way to stop.
-TEST(ConformanceSelection, EveryVitalPieceNamesACase) {
-  for (const auto& suite : {parol6::conformance::suite(), morap::conformance::suite(),
-                            kinovazed::conformance::suite()}) {
-    const auto quick = names(select(suite, Profile::kFirmware, {.tier = Tier::kQuick}));
-    for (const auto piece : suite.vital) {
-      EXPECT_TRUE(std::ranges::any_of(
-          quick, [&](const std::string& name) { return name.find(piece) != name.npos; }))
-          << suite.device << " " << piece;
-    }
-  }
-}
-
-TEST(ConformanceSelection, ReadsShards) {
-  EXPECT_EQ(parse_shard("2/4")->index, 2U);
-  EXPECT_EQ(parse_shard("2/4")->count, 4U);
-  for (const auto* text : {"", "2", "/", "0/4", "5/4", "1/0", "1/4x", "a/b", "-1/4", "1/4/2"}) {
-    EXPECT_FALSE(parse_shard(text)) << text;
-  }
-}
-
-constexpr std::chrono::year_month_day kToday{std::chrono::year{2026}, std::chrono::month{11},
-                                             std::chrono::day{21}};
-
-Outcome<std::vector<Waiver>> waivers(const std::string& entries) {
-  return parse_waivers(R"({"schema": "armjig.waivers/1", "waivers": [)" + entries + "]}", kSuite,
-                       kToday, "w.json");
-}
-
-TEST(ConformanceWaivers, AreReadWithReasonAndLastDay) {
-  const auto read =
-      waivers(R"({"requirement": "n.fail", "reason": "why", "expires": "2026-11-21"})");
-  ASSERT_TRUE(read) << describe(read.error());
-  EXPECT_EQ(read->at(0).requirement, "n.fail");
-  EXPECT_EQ(read->at(0).reason, "why");
-  EXPECT_EQ(to_string(read->at(0).expires), "2026-11-21");
-}
-
-TEST(ConformanceWaivers, AreRefusedWithTheReasonWhy) {
-  const auto hint = [](const std::string& entries) { return describe(waivers(entries).error()); };
-  EXPECT_THAT(hint(R"({"requirement": "n.fail", "reason": "why", "expires": "2026-11-20"})"),
-              HasSubstr("expired on 2026-11-20"));
-  EXPECT_THAT(hint(R"({"requirement": "n.none", "reason": "why", "expires": "2027-01-01"})"),
-              HasSubstr("n.none"));
-  EXPECT_THAT(hint(R"({"requirement": "n.fail", "reason": "", "expires": "2027-01-01"})"),
-              HasSubstr("reason"));
-  EXPECT_THAT(hint(R"({"requirement": "n.fail", "reason": "why", "expires": "2027-02-30"})"),
-              HasSubstr("date"));
-  const auto twice =
-      std::string{R"({"requirement": "n.fail", "reason": "w", "expires": "2027-01-01"})"};
-  EXPECT_THAT(hint(twice + "," + twice), HasSubstr("twice"));
-  for (const auto* text : {"", "[]", "{}", R"({"schema": "armjig.waivers/1"})"}) {
-    EXPECT_FALSE(parse_waivers(text, kSuite, kToday, "w.json")) << text;
-  }
 }
 
 }  // namespace

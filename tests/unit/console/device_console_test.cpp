@@ -84,7 +84,7 @@ class DeviceConsoleTest : public ::testing::Test {
     crane_.begin(line);
     return transcript_.take();
   }
-  testing::Transcript transcript_;
+  Transcript transcript_;
   Crane crane_{transcript_.say()};
 };
 
@@ -179,7 +179,7 @@ TEST_F(DeviceConsoleTest, LeavesByTwoNames) {
   EXPECT_FALSE(crane_.wants_to_quit());
   EXPECT_EQ(said_to("exit"), "");
   EXPECT_TRUE(crane_.wants_to_quit());
-  testing::Transcript other;
+  Transcript other;
   Crane second{other.say()};
   second.begin("quit");
   EXPECT_TRUE(second.wants_to_quit());

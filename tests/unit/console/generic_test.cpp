@@ -28,7 +28,7 @@ StreamLink bus_link() {
 }
 
 TEST(GenericConsole, SendsBytesAndShowsWhatTheyMean) {
-  testing::Transcript transcript;
+  Transcript transcript;
   const auto console = open(demo_link(), demo::make_dissector(), "emulated:", transcript.say());
   EXPECT_EQ(transcript.run(*console, "status"), "! nothing has come yet\n");
   EXPECT_THAT(transcript.run(*console, "send A5 718E"), HasSubstr("113 (query)"));
@@ -39,7 +39,7 @@ TEST(GenericConsole, SendsBytesAndShowsWhatTheyMean) {
 }
 
 TEST(GenericConsole, TakesSingleTransactionsOnABus) {
-  testing::Transcript transcript;
+  Transcript transcript;
   const auto console = open(bus_link(), morap::make_dissector(), "emulated:", transcript.say());
   EXPECT_EQ(transcript.run(*console, "send 22 83"), "sent\n");
   EXPECT_THAT(transcript.run(*console, "wait 0.1"), HasSubstr("command 131 (read_motor_status)"));

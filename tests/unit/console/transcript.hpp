@@ -9,7 +9,7 @@
 
 #include "harness/console/device_console.hpp"
 
-namespace armjig::testing {
+namespace armjig {
 
 /// What a console says, a line each; in front of it stands `*` for an event, `!` for what failed
 /// and `?` for what could not be read.
@@ -40,4 +40,4 @@ class Transcript {
   std::string text_;
 };
 
-}  // namespace armjig::testing
+}  // namespace armjig

@@ -36,7 +36,7 @@ class ServerConsole : public ::testing::Test {
     }
   }
 
-  testing::Transcript transcript_;
+  Transcript transcript_;
   std::unique_ptr<DeviceConsole> console_;
 };
 

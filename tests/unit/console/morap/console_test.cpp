@@ -27,7 +27,7 @@ class NodeConsole : public ::testing::Test {
   }
   std::string run(std::string_view line) { return transcript_.run(*console_, line); }
 
-  testing::Transcript transcript_;
+  Transcript transcript_;
   std::unique_ptr<DeviceConsole> console_;
 };
 

@@ -38,7 +38,7 @@ class BoardConsole : public ::testing::Test {
     }
   }
 
-  testing::Transcript transcript_;
+  Transcript transcript_;
   StreamPort* port_ = nullptr;
   std::unique_ptr<DeviceConsole> console_;
 };
