@@ -41,6 +41,11 @@ bool is_same(const Symptom& one, const Symptom& other) {
          std::ranges::find_first_of(one.parts, other.parts) != one.parts.end();
 }
 
+/// What became of a whole message.
+bool is_of(const Symptom& symptom, Change change) {
+  return std::ranges::find(symptom.parts, to_string(change)) != symptom.parts.end();
+}
+
 std::string sentence_of(const Symptom& symptom, const Script& script, const Script& harmless,
                         MakeDissector make_dissector) {
   constexpr std::size_t kMostWords = 4;
@@ -151,9 +156,7 @@ class Campaign {
     }
     return {};
   }
-  static bool is_answered(const Symptom& symptom) {
-    return std::ranges::find(symptom.parts, to_string(Change::kMissing)) == symptom.parts.end();
-  }
+  static bool is_answered(const Symptom& symptom) { return !is_of(symptom, Change::kMissing); }
   /// From now on nothing is said of it.
   void pass_over(const Symptom& symptom, const std::string& since) {
     for (const auto& part : symptom.parts) {
@@ -307,14 +310,16 @@ class Campaign {
   }
 
   /// With that symptom; or, if it stays long so, with one of another answer that is wrong in the
-  /// same respect, as when all answers are late.
+  /// same respect, as when all answers are late, or of the same kind of answer if nobody can say in
+  /// which respect: of many that come in motion, one that is wrong is one too many.
   [[nodiscard]] Outcome<Script> made_short(Script script, const Symptom& symptom) {
     constexpr std::size_t kLong = 20;
     auto strictly =
         made_short(std::move(script), [&](const Symptom& seen) { return is_same(seen, symptom); });
     if (!strictly || strictly->size() <= kLong) return strictly;
     return made_short(*std::move(strictly), [&](const Symptom& seen) {
-      return std::ranges::find_first_of(seen.parts, symptom.parts) != seen.parts.end();
+      const bool is_vague = is_of(symptom, Change::kExtra) && seen.answer == symptom.answer;
+      return is_vague || std::ranges::find_first_of(seen.parts, symptom.parts) != seen.parts.end();
     });
   }
   [[nodiscard]] Outcome<Script> made_short(Script script, const IsIt& is_it) {

@@ -143,10 +143,19 @@ class Shrinking {
     return !is_counted_ && script_.size() >= kMany && !is_worth_it(1);
   }
 
-  /// Messages in one piece that came in several.
+  /// Messages in one piece that came in several: all of them, or of a short script those that may.
   void join() {
+    auto joined = script_;
+    for (std::size_t i = 0; i < joined.size(); ++i) {
+      if (const auto count = pieces_at(joined, i); count > 1) join(joined, i, count);
+    }
+    if (joined == script_ || try_instead(std::move(joined)) || script_.size() >= kMany) return;
     for (std::size_t i = 0; i < script_.size() && may_go_on_(); ++i) {
-      if (const auto count = pieces_at(i); count > 1) (void)try_instead(with_joined(i, count));
+      const auto count = pieces_at(script_, i);
+      if (count <= 1) continue;
+      auto other = script_;
+      join(other, i, count);
+      (void)try_instead(std::move(other));
     }
   }
 
@@ -274,15 +283,15 @@ class Shrinking {
   }
 
   /// How many records from there on are one message together; 0: none are.
-  [[nodiscard]] std::size_t pieces_at(std::size_t place) const {
+  [[nodiscard]] std::size_t pieces_at(const Script& script, std::size_t place) const {
     constexpr std::size_t kMostPieces = 128;
-    const auto& first = script_[place];
+    const auto& first = script[place];
     if (first.kind == LinkKind::kBus) return 0;
     const auto dissector = make_dissector_();
     std::vector<Message> messages;
     std::size_t size = 0;
-    for (auto i = place; i < std::min(script_.size(), place + kMostPieces); ++i) {
-      const auto& piece = script_[i];
+    for (auto i = place; i < std::min(script.size(), place + kMostPieces); ++i) {
+      const auto& piece = script[i];
       if (!is_sent(piece) || piece.kind != first.kind || piece.id != first.id) return 0;
       size += piece.bytes.size();
       dissector->feed(Direction::kToDevice, piece.time, piece.bytes, messages);
@@ -294,16 +303,14 @@ class Shrinking {
     return 0;
   }
 
-  [[nodiscard]] Script with_joined(std::size_t place, std::size_t count) const {
-    auto other = script_;
-    const auto first = other.begin() + static_cast<std::ptrdiff_t>(place);
+  static void join(Script& script, std::size_t place, std::size_t count) {
+    const auto first = script.begin() + static_cast<std::ptrdiff_t>(place);
     const auto end = first + static_cast<std::ptrdiff_t>(count);
     first->time = (end - 1)->time;
     for (auto piece = first + 1; piece != end; ++piece) {
       first->bytes.insert(first->bytes.end(), piece->bytes.begin(), piece->bytes.end());
     }
-    other.erase(first + 1, end);
-    return other;
+    script.erase(first + 1, end);
   }
 
   [[nodiscard]] Script with_pauses(Duration longest) const {

@@ -77,6 +77,30 @@ TEST(Shrink, PutsTogetherWhatOnlyCountsBytes) {
   EXPECT_LE(shorter.size(), 3U);
 }
 
+/// Live an attempt takes seconds.
+TEST(Shrink, JoinsThePiecesOfAllMessagesAtOnce) {
+  constexpr std::size_t kMessages = 300;
+  Script script;
+  const auto whole = demo::encode(demo::Operation::kQuery);
+  for (std::size_t i = 0; i < kMessages; ++i) {
+    const auto time = i * 10ms;
+    script.push_back(byte_at(time, 0));
+    script.back().bytes.assign(whole.begin(), whole.begin() + 2);
+    script.push_back(byte_at(time + 1ms, 0));
+    script.back().bytes.assign(whole.begin() + 2, whole.end());
+  }
+  const auto all = bytes_in(script);
+  int attempts = 0;
+  const auto shorter = shrink(
+      script, {}, demo::make_dissector,
+      [&](const Script& one) {
+        ++attempts;
+        return bytes_in(one) == all;
+      },
+      [&] { return attempts < 40; });
+  EXPECT_LE(shorter.size(), kMessages);
+}
+
 TEST(Shrink, LeavesOutAllThatAreAlikeAtOnce) {
   Script script;
   for (unsigned i = 0; i < 1'000; ++i) script.push_back(byte_at(i * 1ms, i % 2));
