@@ -229,6 +229,7 @@ CampaignOptions campaign_options(const FuzzRun& run, const CampaignState& state,
   if (is_live) {
     options.cases_between_resets = kCasesBetweenResetsLive;
     options.confirmations = 3;
+    options.doubts = 3;
     options.most_shrinking = kShrinkingLive;
     options.begins_with_survey = true;
     options.judging.horizon += options.judging.rules.time_tolerance;

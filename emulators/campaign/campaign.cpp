@@ -235,13 +235,26 @@ class Campaign {
     }
   }
 
-  /// Whether it comes again on devices that are as new.
+  /// Whether it comes again on devices that are as new, and not of the link.
   [[nodiscard]] Outcome<bool> shows(const Script& script, const IsIt& is_it) {
     auto seen = see_afresh(script);
     if (!seen) return tl::unexpected{seen.error()};
-    const bool is_there = seen->symptom && is_it(*seen->symptom);
-    if (is_there) last_seen_ = *std::move(seen);
-    return is_there;
+    if (!seen->symptom || !is_it(*seen->symptom)) return false;
+    auto is_of_link = comes_of_link(script, is_it);
+    if (!is_of_link) return tl::unexpected{is_of_link.error()};
+    if (!*is_of_link) last_seen_ = *std::move(seen);
+    return !*is_of_link;
+  }
+  /// Whether a sound device in the target's place shows it, too.
+  [[nodiscard]] Outcome<bool> comes_of_link(const Script& script, const IsIt& is_it) {
+    const auto whole = with_question(script);
+    for (int left = options_.doubts; left > 0; --left) {
+      const auto heard = stage_.play_to_stand_in(whole, ++doubts_);
+      if (!heard) return tl::unexpected{heard.error()};
+      const auto symptom = symptom_of(whole, *heard, options_.judging, excuses_);
+      if (symptom && is_it(*symptom)) return true;
+    }
+    return false;
   }
   [[nodiscard]] Outcome<bool> shows(const Script& script, const Symptom& symptom) {
     return shows(script, [&](const Symptom& seen) { return is_same(seen, symptom); });
@@ -429,6 +442,7 @@ class Campaign {
   std::map<std::string, int> of_part_;
   Script history_;  ///< what was done since the last reset
   std::size_t history_count_ = 0;
+  std::uint64_t doubts_ = 0;  ///< that there were
   Seen last_seen_;
   WallClock::time_point begun_ = WallClock::now();
   Duration passed_before_ = state_.passed;

@@ -31,6 +31,9 @@ struct CampaignOptions {
   Known known{};
   std::size_t cases_between_resets = 1;  ///< at least 1; where resetting makes the target new
   int confirmations = 1;  ///< so often a symptom has to come again, before and after shrinking
+  /// So often, each time that a symptom has come again, a sound device in the place of a live
+  /// target must not show it.
+  int doubts = 0;
   std::size_t most_attempts = 20'000;  ///< at shrinking one finding
   Duration most_shrinking{};           ///< time for one finding, by the wall clock
   bool stops_at_first = false;         ///< finding that is news
@@ -58,7 +61,7 @@ struct Finding {
 /// How far a campaign is.
 struct CampaignState {
   std::uint64_t cases{};
-  std::uint64_t unsettled{};     ///< symptoms that did not come again
+  std::uint64_t unsettled{};     ///< symptoms that did not come again, or come of the link
   std::string last_unsettled{};  ///< one of them
   /// In what a device that nobody can start again was not like a new one when the campaign began,
   /// or has stayed different since a case; nothing is said of that.

@@ -99,7 +99,7 @@ Report to_report(const std::string& device, const CampaignState& state,
   add("cases kept because they showed something new", fmt::format("{}", state.worthy.size()));
   add("cases that the guard ended", fmt::format("{}", state.refused));
   if (!state.last_refusal.empty()) add("why it ended the last of them", state.last_refusal);
-  add("symptoms that did not come again", fmt::format("{}", state.unsettled));
+  add("symptoms that did not come again, or of the link", fmt::format("{}", state.unsettled));
   if (!state.last_unsettled.empty()) add("the last of them", state.last_unsettled);
   report.sections.push_back(std::move(shown));
   return report;

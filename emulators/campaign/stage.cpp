@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "emulators/sessions/dice.hpp"
+
 namespace armjig::campaign {
 namespace {
 
@@ -112,6 +114,26 @@ Duration phase_of(std::size_t model) {
   return static_cast<Duration::rep>(model - kGuesses.size() + 1) * kPhaseStep;
 }
 
+/// As it comes over a link in real time: all of it later, some of it much later than the rest,
+/// which nobody sees who sends it.
+Script unevenly(const Script& script, sessions::Dice& dice) {
+  constexpr std::int64_t kFewAre = 20;
+  const auto none = Duration{}.count();
+  auto uneven = script;
+  Instant last{};
+  for (auto& record : uneven) {
+    const Duration most = dice.one_in(kFewAre) ? 5ms : 1ms;
+    last = record.time = std::max(last, record.time + Duration{dice.between(none, most.count())});
+  }
+  return uneven;
+}
+
+std::vector<Instant> times_of(const Script& script) {
+  std::vector<Instant> times;
+  for (const auto& record : script) times.push_back(record.time);
+  return times;
+}
+
 Outcome<Played> in_order(Outcome<Played> played) {
   if (played) std::ranges::stable_sort(played->actual, {}, &KeptRecord::time);
   return played;
@@ -125,16 +147,31 @@ Heard heard(Outcome<Played> played) {
 }  // namespace
 
 template <class Port>
-Outcome<void> StageOn<Port>::renew_models() {
-  models_.clear();
+Outcome<Rig<Port>> StageOn<Port>::make_model() const {
+  return setup_.make_model().map([](Rig<Port> model) {
+    (void)greet(model.port());
+    return model;
+  });
+}
+
+template <class Port>
+Outcome<std::vector<Rig<Port>>> StageOn<Port>::make_models() const {
+  Models models;
   const auto count = setup_.is_emulated ? 1 : kLiveModels;
   for (std::size_t i = 0; setup_.make_model && i < count; ++i) {
-    auto opened = setup_.make_model();
-    if (!opened) return tl::unexpected{opened.error()};
-    models_.push_back(*std::move(opened));
-    (void)greet(models_.back().port());
-    if (const auto phase = phase_of(i); phase > Duration{}) rest(models_.back().port(), phase);
+    auto model = make_model();
+    if (!model) return tl::unexpected{model.error()};
+    models.push_back(*std::move(model));
+    if (const auto phase = phase_of(i); phase > Duration{}) rest(models.back().port(), phase);
   }
+  return models;
+}
+
+template <class Port>
+Outcome<void> StageOn<Port>::renew_models() {
+  auto models = make_models();
+  if (!models) return tl::unexpected{models.error()};
+  models_ = *std::move(models);
   last_end_ = target_->port().now();
   return {};
 }
@@ -153,16 +190,37 @@ Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
     if (auto why = target_->last_refusal()) refused.hint = std::move(why->reason);
     return tl::unexpected{std::move(refused)};
   }
+  last_end_ = target_->port().now();
+  for (auto& model : models_) {
+    if (idle > Duration{}) rest(model.port(), idle);
+  }
+  return beside(models_, script, std::move(played));
+}
+
+template <class Port>
+BothHeard StageOn<Port>::beside(Models& models, const Script& script, Outcome<Played> played) {
   const auto known = played.value_or(Played{});
   BothHeard both{heard(std::move(played)), {}, lateness_of(script, known.passed)};
-  last_end_ = target_->port().now();
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    auto& model = models_[i].port();
-    if (idle > Duration{}) rest(model, idle);
+  for (std::size_t i = 0; i < models.size(); ++i) {
     const auto guessed = setup_.is_emulated ? script : guess_of(i)(script, known);
-    both.models.push_back(heard(in_order(play_host(model, guessed, setup_.how))));
+    both.models.push_back(heard(in_order(play_host(models[i].port(), guessed, setup_.how))));
   }
   return both;
+}
+
+template <class Port>
+Outcome<BothHeard> StageOn<Port>::play_to_stand_in(const Script& script, std::uint64_t seed) {
+  constexpr Duration kMostPhase = 20ms;
+  if (!setup_.make_model) return BothHeard{};
+  auto models = make_models();
+  if (!models) return tl::unexpected{models.error()};
+  auto stand_in = make_model();
+  if (!stand_in) return tl::unexpected{stand_in.error()};
+  sessions::Dice dice{seed};
+  rest(stand_in->port(), Duration{dice.between(1, kMostPhase.count())});
+  auto played = in_order(play_host(stand_in->port(), unevenly(script, dice), setup_.how));
+  if (played) played->passed = times_of(script);
+  return beside(*models, script, std::move(played));
 }
 
 template <class Port>

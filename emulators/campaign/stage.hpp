@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -51,6 +52,15 @@ class Stage {
   /// problem but heard; a problem is that the guard refused something (`kForbidden`). If it did
   /// because this program was silent for too long, the next one is played under a new supervisor.
   [[nodiscard]] virtual Outcome<BothHeard> play(const Script& script) = 0;
+
+  /// The same with a model in the place of a live target, both as new. All comes to it as unevenly
+  /// as over a link, which `seed` decides: what is heard then that no model says, tells nothing of
+  /// the target. Target and models of `play` stay where they are. Without models, and here by
+  /// default, nothing is heard. Problems: those of opening models.
+  [[nodiscard]] virtual Outcome<BothHeard> play_to_stand_in(const Script& /*script*/,
+                                                            std::uint64_t /*seed*/) {
+    return BothHeard{};
+  }
 };
 
 /// How a target and its model are had.
@@ -79,13 +89,20 @@ class StageOn final : public Stage {
   [[nodiscard]] bool can_reset() const override { return setup_.is_emulated || setup_.restart; }
   Outcome<void> renew_models() override;
   Outcome<BothHeard> play(const Script& script) override;
+  Outcome<BothHeard> play_to_stand_in(const Script& script, std::uint64_t seed) override;
 
  private:
+  using Models = std::vector<Rig<Port>>;
+
   [[nodiscard]] Outcome<void> make_target();
+  [[nodiscard]] Outcome<Rig<Port>> make_model() const;
+  [[nodiscard]] Outcome<Models> make_models() const;
+  /// What a target said, and beside it what models say that get it as that one may have.
+  [[nodiscard]] BothHeard beside(Models& models, const Script& script, Outcome<Played> played);
 
   StageSetup<Port> setup_;
   std::optional<Rig<Port>> target_;
-  std::vector<Rig<Port>> models_;
+  Models models_;
   Instant last_end_{};
   bool was_open_ = false;
 };

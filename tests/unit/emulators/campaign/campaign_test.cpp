@@ -233,6 +233,45 @@ TEST(Campaign, KeepsTheTimeBeforeAnEndWhenItMakesAFindingShort) {
   EXPECT_TRUE(is_any_shorter);
 }
 
+/// With a device of its own in the place of the target.
+class StandInStage final : public Stage {
+ public:
+  StandInStage(std::unique_ptr<Stage> stage, std::unique_ptr<Stage> stand_in)
+      : stage_{std::move(stage)}, stand_in_{std::move(stand_in)} {}
+  Outcome<void> reset() override { return stage_->reset(); }
+  [[nodiscard]] bool can_reset() const override { return stage_->can_reset(); }
+  Outcome<void> renew_models() override { return stage_->renew_models(); }
+  Outcome<BothHeard> play(const Script& script) override { return stage_->play(script); }
+  Outcome<BothHeard> play_to_stand_in(const Script& script, std::uint64_t /*seed*/) override {
+    return stand_in_->reset().and_then([&] { return stand_in_->play(script); });
+  }
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Stage> stand_in_;
+};
+
+TEST(Campaign, FindsNothingInWhatASoundDeviceShowsInTheSamePlace) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
+  const auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
+  const auto stage_of = [&](const RigOptions& target) {
+    return cli::stage_of(device, target, device, emulated(""), Hand{}, 20ms);
+  };
+  for (const bool is_of_link : {true, false}) {
+    StandInStage stage{stage_of(faulty), stage_of(is_of_link ? faulty : emulated(""))};
+    CampaignState state;
+    const CampaignOptions options{.most_cases = 40,
+                                  .judging = {device.make_dissector, {}, 20ms},
+                                  .doubts = 1,
+                                  .most_shrinking = 1h,
+                                  .stops_at_first = true};
+    ASSERT_TRUE(run_campaign(stage, material, options, state, {}));
+    EXPECT_EQ(state.findings.empty(), is_of_link);
+    EXPECT_EQ(state.unsettled > 0, is_of_link);
+  }
+}
+
 /// The scripts of an interrupted campaign, as it goes on with them.
 std::vector<Script> kept_in_a_folder(const std::string& device,
                                      const std::vector<Script>& scripts) {

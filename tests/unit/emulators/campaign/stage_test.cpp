@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/device.hpp"
+#include "cli/devices/devices.hpp"
+#include "cli/diff.hpp"
+#include "cli/fuzz_material.hpp"
+#include "emulators/campaign/author.hpp"
+#include "emulators/campaign/survey.hpp"
+#include "harness/rig/judge.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+RigOptions rig_at(const std::string& target) {
+  RigOptions rig;
+  rig.target = parse_target(target).value();
+  rig.permissions = parse_permissions("all").value();
+  return rig;
+}
+
+/// What a campaign on a live device is made of. The device itself is not there.
+class Live {
+ public:
+  Live(const std::string& name, const std::string& target)
+      : device_{**cli::find_device(cli::shipped_devices(), name)},
+        rules_{cli::rules_beside(device_, rig_at(target).target, "").value()},
+        material_{cli::material_of(device_, rig_at(target), model_, 8s).value()},
+        stage_{cli::stage_of(device_, rig_at(target), device_, model_, Hand{}, 220ms)} {
+    material_.rules = rules_;
+    excuses_.add({}, "connection", "time");
+  }
+
+  [[nodiscard]] const Material& material() const { return material_; }
+  [[nodiscard]] const ComparisonRules& rules() const { return rules_; }
+  [[nodiscard]] Script whole(const Script& script) const {
+    return joined(spaced(with_ends(script), material_.spacing), material_.harmless, 20ms);
+  }
+  [[nodiscard]] BothHeard heard(const Script& script, std::uint64_t seed) const {
+    return stage_->play_to_stand_in(whole(script), seed).value();
+  }
+  [[nodiscard]] std::optional<Symptom> symptom(const Script& script, std::uint64_t seed,
+                                               const ComparisonRules& rules) const {
+    const Judging judging{device_.make_dissector, rules, 20ms + rules.time_tolerance};
+    return symptom_of(whole(script), heard(script, seed), judging, excuses_);
+  }
+
+ private:
+  const cli::Device& device_;
+  RigOptions model_ = rig_at("emulated:?profile=firmware");
+  ComparisonRules rules_;
+  Material material_;
+  std::unique_ptr<Stage> stage_;
+  Excuses excuses_;
+};
+
+std::vector<Live> all_live() {
+  std::vector<Live> all;
+  all.emplace_back("parol6", "pty:/tmp/nowhere");
+  all.emplace_back("kinovazed", "tcp:127.0.0.1:1");
+  all.emplace_back("morap", "i2c:/dev/nowhere");
+  return all;
+}
+
+TEST(Stage, HearsOfAStandInWhatSomeModelSays) {
+  constexpr std::size_t kEvery = 41;
+  for (const auto& live : all_live()) {
+    const Survey survey{live.material(), 1};
+    for (std::size_t i = 0; i < survey.size(); i += kEvery) {
+      const auto symptom = live.symptom(survey.at(i), i, live.rules());
+      EXPECT_FALSE(symptom) << i << ": " << symptom->key() << ", " << symptom->actual;
+    }
+  }
+}
+
+TEST(Stage, GivesAStandInAllAsUnevenlyAsALinkDoes) {
+  for (const auto& live : all_live()) {
+    const auto script = Author{live.material()}.draw(4, {});
+    EXPECT_TRUE(live.symptom(script, 1, {}));
+    EXPECT_EQ(live.heard(script, 1).target.said, live.heard(script, 1).target.said);
+    EXPECT_NE(live.heard(script, 1).target.said, live.heard(script, 2).target.said);
+  }
+}
+
+}  // namespace
+}  // namespace armjig::campaign
