@@ -6,9 +6,11 @@
 #include <array>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "cli/record_judge.hpp"
 
@@ -126,6 +128,19 @@ auto permit_of(RecordJudge::MakeJudge make_judge, const Permissions& granted) {
   };
 }
 
+/// The same, given what a sound device says. What is left out changes that, so it is asked again.
+auto permit_case_of(RecordJudge::MakeJudge make_judge, const Permissions& granted,
+                    std::function<std::vector<KeptRecord>(const Script&)> rehearse) {
+  return [make_judge, granted, rehearse = std::move(rehearse)](Script& script) {
+    constexpr int kTimes = 6;
+    for (int left = kTimes; left > 0; --left) {
+      const auto size = script.size();
+      RecordJudge{make_judge}.leave_out_refused(script, rehearse(script), granted);
+      if (script.size() == size) return;
+    }
+  };
+}
+
 template <class Port>
 Outcome<Rig<Port>> open_fresh(const Wiring<Port>& wiring, const RigOptions& how) {
   return Rig<Port>::open(wiring, how);
@@ -207,6 +222,8 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
           material.permit = permit_of(kind.make_judge, how.permissions);
           material.epilogue.one_in = kEpilogueLive;
           material.rehearse = rehearsal_on(stage_alone(device, model, {}, 1));
+          material.permit_case =
+              permit_case_of(kind.make_judge, how.permissions, material.rehearse);
         }
         return material;
       },

@@ -189,8 +189,11 @@ class Campaign {
   /// Those of the survey are shared among all shares, too.
   [[nodiscard]] Script script_of(std::uint64_t number) const {
     const auto place = number * options_.share.count + options_.share.index - 1;
-    if (survey_ && place < survey_->size()) return survey_->at(place);
-    return author_.draw(seed_of(options_, number), state_.worthy);
+    auto script = survey_ && place < survey_->size()
+                      ? survey_->at(place)
+                      : author_.draw(seed_of(options_, number), state_.worthy);
+    if (material_.permit_case) material_.permit_case(script);
+    return script;
   }
 
   [[nodiscard]] Outcome<void> play_case(std::uint64_t number) {

@@ -35,6 +35,9 @@ struct Material {
   std::vector<std::uint32_t> addresses{};  ///< of a bus: who is there
   /// Leaves out of a script what may not be sent; empty: all may.
   std::function<void(Script& script)> permit{};
+  /// The same of a whole case, given where it leads a sound device that is as new; empty: nobody
+  /// knows.
+  std::function<void(Script& script)> permit_case{};
   /// Whether what comes of a message depends on more than answers tell; nullptr: of none.
   bool (*strays)(Bytes message){};
   bool has_hands = false;      ///< what is beside the link can be done

@@ -272,6 +272,23 @@ TEST(Campaign, FindsNothingInWhatASoundDeviceShowsInTheSamePlace) {
   }
 }
 
+TEST(Campaign, PlaysOfACaseNoMoreThanIsPermitted) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
+  for (const bool is_nothing_permitted : {true, false}) {
+    auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
+    if (is_nothing_permitted) material.permit_case = [](Script& script) { script.clear(); };
+    const auto stage = cli::stage_of(device, faulty, device, emulated(""), Hand{}, 20ms);
+    CampaignState state;
+    const CampaignOptions options{.most_cases = 40,
+                                  .judging = {device.make_dissector, {}, 20ms},
+                                  .most_shrinking = 1h,
+                                  .stops_at_first = true};
+    ASSERT_TRUE(run_campaign(*stage, material, options, state, {}));
+    EXPECT_EQ(state.findings.empty(), is_nothing_permitted);
+  }
+}
+
 /// The scripts of an interrupted campaign, as it goes on with them.
 std::vector<Script> kept_in_a_folder(const std::string& device,
                                      const std::vector<Script>& scripts) {
