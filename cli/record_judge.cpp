@@ -35,22 +35,24 @@ Judge& RecordJudge::judge_of(const KeptRecord& record) {
 
 std::optional<Refusal> RecordJudge::any_refusal_of(const KeptRecord& record,
                                                    const Permissions& granted) {
-  if (!is_talk(record.kind)) return {};
+  const bool is_asked = record.direction == Direction::kToDevice || is_read(record);
+  if (!is_talk(record.kind) || !is_asked) return {};
   const auto message = message_of(record);
-  auto& judge = judge_of(record);
-  std::optional<Refusal> refusal;
-  if (record.direction == Direction::kToDevice || is_read(record)) {
-    refusal = judge.judge(is_read(record) ? Bytes{message}.first(1) : Bytes{message}, granted);
-  }
+  return judge_of(record).judge(is_read(record) ? Bytes{message}.first(1) : Bytes{message},
+                                granted);
+}
+
+void RecordJudge::observe(const KeptRecord& record) {
   const bool is_heard = record.direction == Direction::kFromDevice || record.kind == LinkKind::kBus;
-  if (!refusal && is_heard) judge.observe(message);
-  return refusal;
+  if (is_talk(record.kind) && is_heard) judge_of(record).observe(message_of(record));
 }
 
 std::optional<Refusal> RecordJudge::refusal_of(const KeptRecord& record,
                                                const Permissions& granted) {
   auto refusal = any_refusal_of(record, granted);
-  return refusal && refusal->cause == Refusal::Cause::kRequest ? refusal : std::nullopt;
+  if (refusal && refusal->cause == Refusal::Cause::kRequest) return refusal;
+  observe(record);
+  return {};
 }
 
 bool RecordJudge::must_stop() {
@@ -65,11 +67,13 @@ void RecordJudge::leave_out_refused(std::vector<KeptRecord>& script,
   bool is_stopped = false;
   std::erase_if(script, [&](const KeptRecord& record) {
     for (; next != said.end() && next->time <= record.time; ++next) {
-      if (next->direction != Direction::kFromDevice || !is_talk(next->kind)) continue;
-      judge_of(*next).observe(message_of(*next));
+      if (next->direction != Direction::kFromDevice) continue;
+      observe(*next);
       is_stopped = is_stopped || must_stop();
     }
-    return is_stopped || any_refusal_of(record, granted).has_value();
+    if (is_stopped || any_refusal_of(record, granted)) return true;
+    observe(record);
+    return false;
   });
 }
 

@@ -32,6 +32,8 @@ class RecordJudge {
   /// The same, whatever it depends on.
   [[nodiscard]] std::optional<Refusal> any_refusal_of(const KeptRecord& record,
                                                       const Permissions& granted);
+  /// Lets the judge hear what the device says, or what a bus carries.
+  void observe(const KeptRecord& record);
   [[nodiscard]] Judge& judge_of(const KeptRecord& record);
   [[nodiscard]] bool must_stop();
 

@@ -111,12 +111,12 @@ class Shrinking {
     return false;
   }
 
-  /// Of a long one without all that are alike, or all of them but the last.
+  /// Of a long one without all that are alike, or all of them but the last, where there are many of
+  /// them: each try may take as long as the script.
   void leave_out_alike() {
-    constexpr int kMostKinds = 100;
+    constexpr std::size_t kMostKinds = 50;
     if (script_.size() < kMany) return;
-    int left = kMostKinds;
-    for (std::size_t i = 0; i < script_.size() && left > 0 && may_go_on_(); ++i) {
+    for (std::size_t i = 0; i < script_.size() && may_go_on_(); ++i) {
       const auto begin = script_.begin() + static_cast<std::ptrdiff_t>(i);
       const auto& one = *begin;
       const auto is_alike = [&one](const KeptRecord& other) {
@@ -124,7 +124,8 @@ class Shrinking {
                other.bytes == one.bytes && other.details == one.details;
       };
       if (std::find_if(script_.begin(), begin, is_alike) != begin) continue;  // has been looked at
-      --left;
+      const auto count = std::count_if(begin, script_.end(), is_alike);
+      if (static_cast<std::size_t>(count) * kMostKinds < script_.size()) continue;
       auto none = script_;
       std::erase_if(none, is_alike);
       if (try_instead(std::move(none))) {

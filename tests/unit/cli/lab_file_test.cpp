@@ -91,13 +91,13 @@ TEST(LabFile, ABoardIsKnownOnUsbByItsNumbersAndItsName) {
 }
 
 /// What a wrong lab is refused with.
-struct Refusal {
+struct RefusedFile {
   std::string_view text;
   std::string_view where;
   std::string_view hint;
 };
 
-const Refusal kRefusals[] = {
+const RefusedFile kRefusals[] = {
     {"", "lab.toml:1", "write [[device]]"},
     {"colour = 'red'\n[[device]]\ndevice = 'demo'\n", "lab.toml:1", "'colour'"},
     {"[[device]]\ndevice = 'demo'\ncolour = 'red'\n", "lab.toml:3", "'colour'"},

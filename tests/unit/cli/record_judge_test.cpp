@@ -5,11 +5,14 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "cli/device.hpp"
 #include "cli/devices/devices.hpp"
 #include "cli/fuzz_material.hpp"
+#include "harness/rig/judge.hpp"
 #include "harness/rig/parol6_judge.hpp"
 #include "harness/wire/parol6/frame.hpp"
 
@@ -62,6 +65,29 @@ TEST(RecordJudge, LeavesOutAllThatFollowsIfTheDeviceWereStopped) {
                        sent(Command::kIdle, 30ms)};
   const auto left = left_of(script, {said(0xFF, 5ms), said(0xFF, 15ms, kPressed)});
   EXPECT_TRUE(left == Records{script[0]}) << left.size();
+}
+
+/// Refuses every message because of where the device is, and tells how much it heard.
+class AtABound final : public OneStopJudge {
+ public:
+  static inline int times_heard = 0;
+
+  std::optional<Refusal> judge(Messages /*messages*/, const Permissions& /*granted*/) override {
+    return Refusal{.cause = Refusal::Cause::kDevice};
+  }
+  void observe(Bytes /*bytes*/) override { ++times_heard; }
+  [[nodiscard]] bool may_be_moving() const override { return false; }
+};
+
+TEST(RecordJudge, HearsOnABusWhatMayDependOnWhereTheDeviceIs) {
+  RecordJudge judge{[]() -> std::unique_ptr<Judge> { return std::make_unique<AtABound>(); }};
+  const KeptRecord write{.kind = LinkKind::kBus,
+                         .direction = Direction::kToDevice,
+                         .id = 0x10,
+                         .bytes = {std::byte{1}}};
+  AtABound::times_heard = 0;
+  EXPECT_FALSE(judge.refusal_of(write, Permissions::all()));
+  EXPECT_EQ(AtABound::times_heard, 1);
 }
 
 /// What a live board has when it was started: a go-to needs a homed arm, and homing takes long.

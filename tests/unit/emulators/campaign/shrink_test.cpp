@@ -118,6 +118,20 @@ TEST(Shrink, LeavesOutAllThatAreAlikeAtOnce) {
   EXPECT_LT(attempts, 3'000);
 }
 
+/// Live each try takes as long as the script.
+TEST(Shrink, LooksForNothingAlikeWhereAllDiffer) {
+  int attempts = 0;
+  const auto shorter = shrink(
+      bytes_up_to(200), {}, demo::make_dissector,
+      [&](const Script& one) {
+        ++attempts;
+        return has(one, 40) && has(one, 150);
+      },
+      kAlways);
+  EXPECT_EQ(shorter.size(), 2U);
+  EXPECT_LT(attempts, 100);
+}
+
 TEST(Shrink, LeavesOutPairsWhereverTheyBegin) {
   constexpr unsigned kFirst = 100;
   constexpr unsigned kLast = 101;
