@@ -28,6 +28,9 @@ constexpr std::uint32_t kOwnConnection = 99;
 /// How long what is asked harmlessly may take.
 constexpr Duration kPauseAfterQuestion = 20ms;
 
+/// What is answered comes before the end: something has to be at the end.
+constexpr Duration kBeforeEnd = 100ms;
+
 /// In real time an epilogue takes as long as several other cases.
 constexpr std::int64_t kEpilogueLive = 12;
 
@@ -36,13 +39,6 @@ constexpr std::int64_t kEpilogueLive = 12;
 /// answers one who has gone may be another thing after it than one that answered in time.
 Spacing spacing_live(const Device& device) {
   return {.least = 3ms, .around_ends = 100ms, .works_on = device.fuzz.works_on};
-}
-
-KeptRecord border(std::string_view dir, std::string_view how, Instant time) {
-  return {.time = time,
-          .kind = LinkKind::kEvents,
-          .direction = Direction::kToDevice,
-          .details = fmt::format(R"("dir":"{}","conn":{},"text":"{}")", dir, kOwnConnection, how)};
 }
 
 /// A transaction as the probe of a bus has it: a byte with address and direction, then what is
@@ -66,7 +62,7 @@ Script harmless_script(LinkKind kind, std::vector<Bytes> messages, Messages stop
   Script script;
   Instant time{};
   if (kind == LinkKind::kSession) {
-    script.push_back(border("connect", "ok", time));
+    add(script, campaign::border("connect", kOwnConnection, "ok"));
     time += kPauseAfterQuestion;
     messages.insert(messages.begin(), stop.begin(), stop.end());
   }
@@ -82,9 +78,9 @@ Script harmless_script(LinkKind kind, std::vector<Bytes> messages, Messages stop
     }
     time += kPauseAfterQuestion;
   }
-  // What is answered comes before the end: something has to be at the end.
   if (kind == LinkKind::kSession) {
-    script.push_back(border("disconnect", "client-close", time + 100ms));
+    const auto pause = time + kBeforeEnd - script.back().time;
+    add(script, campaign::border("disconnect", kOwnConnection, "client-close"), pause);
   } else if (!script.empty()) {
     const auto again = script;
     for (auto record : again) {

@@ -36,14 +36,21 @@ std::uint64_t seed_of(const CampaignOptions& options, std::uint64_t number) {
   return mixed ^ mixed >> 31U;
 }
 
-bool is_same(const Symptom& one, const Symptom& other) {
-  return one.answer == other.answer &&
-         std::ranges::find_first_of(one.parts, other.parts) != one.parts.end();
-}
-
 /// What became of a whole message.
 bool is_of(const Symptom& symptom, Change change) {
   return std::ranges::find(symptom.parts, to_string(change)) != symptom.parts.end();
+}
+
+/// Of answers that differ in much, one is told as missing or as one too many here, as changed
+/// there.
+bool is_vague(const Symptom& symptom) {
+  return is_of(symptom, Change::kMissing) || is_of(symptom, Change::kExtra);
+}
+
+bool is_same(const Symptom& one, const Symptom& other) {
+  return one.answer == other.answer &&
+         (is_vague(one) || is_vague(other) ||
+          std::ranges::find_first_of(one.parts, other.parts) != one.parts.end());
 }
 
 std::string sentence_of(const Symptom& symptom, const Script& script, const Script& harmless,
@@ -326,16 +333,15 @@ class Campaign {
   }
 
   /// With that symptom; or, if it stays long so, with one of another answer that is wrong in the
-  /// same respect, as when all answers are late, or of the same kind of answer if nobody can say in
-  /// which respect: of many that come in motion, one that is wrong is one too many.
+  /// same respect, as when all answers are late.
   [[nodiscard]] Outcome<Script> made_short(Script script, const Symptom& symptom) {
     constexpr std::size_t kLong = 20;
     auto strictly =
         made_short(std::move(script), [&](const Symptom& seen) { return is_same(seen, symptom); });
     if (!strictly || strictly->size() <= kLong) return strictly;
     return made_short(*std::move(strictly), [&](const Symptom& seen) {
-      const bool is_vague = is_of(symptom, Change::kExtra) && seen.answer == symptom.answer;
-      return is_vague || std::ranges::find_first_of(seen.parts, symptom.parts) != seen.parts.end();
+      return is_same(seen, symptom) ||
+             std::ranges::find_first_of(seen.parts, symptom.parts) != seen.parts.end();
     });
   }
   [[nodiscard]] Outcome<Script> made_short(Script script, const IsIt& is_it) {

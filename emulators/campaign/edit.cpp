@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "harness/link/bus_port.hpp"
 
@@ -92,6 +93,26 @@ void seal(const Material& material, KeptRecord& record) {
   material.seal(message);
   std::copy(message.begin() + static_cast<std::ptrdiff_t>(head), message.end(),
             record.bytes.begin());
+}
+
+KeptRecord sending(KeptRecord record, std::vector<std::byte> bytes) {
+  record.bytes = std::move(bytes);
+  return record;
+}
+Script sending(Script exchange, std::vector<std::byte> bytes) {
+  exchange.front().bytes = std::move(bytes);
+  return exchange;
+}
+
+KeptRecord in_one_piece(KeptRecord one, const KeptRecord& next) {
+  one.bytes.insert(one.bytes.end(), next.bytes.begin(), next.bytes.end());
+  return one;
+}
+
+std::vector<std::byte> cut(std::vector<std::byte> bytes, std::size_t size) {
+  constexpr std::byte kSurplus{0x41};
+  bytes.resize(size, kSurplus);
+  return bytes;
 }
 
 void hurry(Script& script, Duration longest) {

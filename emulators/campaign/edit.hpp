@@ -50,6 +50,15 @@ bool put(Bytes message, KeptRecord& record);
 /// Makes lengths and checksums in the record right again, where somebody can.
 void seal(const Material& material, KeptRecord& record);
 
+/// What the record sends, in another form; an exchange with that in place of what it sends.
+[[nodiscard]] KeptRecord sending(KeptRecord record, std::vector<std::byte> bytes);
+[[nodiscard]] Script sending(Script exchange, std::vector<std::byte> bytes);
+
+[[nodiscard]] KeptRecord in_one_piece(KeptRecord one, const KeptRecord& next);
+
+/// Its first bytes; more than there are: some that are not zero at the end.
+[[nodiscard]] std::vector<std::byte> cut(std::vector<std::byte> bytes, std::size_t size);
+
 /// With no pause longer than that.
 void hurry(Script& script, Duration longest);
 

@@ -20,26 +20,6 @@ void repeat(Script& body, const KeptRecord& record, int count, Duration pause) {
   for (int i = 0; i < count; ++i) add(body, record, pause);
 }
 
-/// What the record sends, in another form.
-KeptRecord sending(KeptRecord record, std::vector<std::byte> bytes) {
-  record.bytes = std::move(bytes);
-  return record;
-}
-Script sending(Script exchange, std::vector<std::byte> bytes) {
-  exchange.front().bytes = std::move(bytes);
-  return exchange;
-}
-
-KeptRecord in_one_piece(KeptRecord one, const KeptRecord& next) {
-  one.bytes.insert(one.bytes.end(), next.bytes.begin(), next.bytes.end());
-  return one;
-}
-
-std::vector<std::byte> cut(std::vector<std::byte> bytes, std::size_t size) {
-  bytes.resize(size);
-  return bytes;
-}
-
 Script copies(const Script& exchange, int count) {
   Script body;
   for (int i = 0; i < count; ++i) add(body, exchange);
@@ -65,6 +45,15 @@ bool Exercises::can_choose(const Setting& setting, const Field& field) const {
 void Exercises::look(Script& body, std::size_t which) const {
   if (!repertoire_.looks().empty())
     add(body, to(body.back().id, repertoire_.looks()[which % repertoire_.looks().size()]));
+}
+
+/// On a stream so far apart that what is late does not come together with what is next: of that,
+/// no answer is sure.
+void Exercises::add_apart(Script& body, const Script& exchange) const {
+  constexpr Duration kApart = 6ms;
+  for (const auto& record : exchange) {
+    add(body, record, material_.kind == LinkKind::kStream ? kApart : kStep);
+  }
 }
 
 /// What comes of it, for so long that it is not taken for what was before or comes next: on a
@@ -186,7 +175,10 @@ Script Exercises::sums(const Setting& setting) const {
   const auto field = std::ranges::find_if(fields, [&](const Field& one) {
     return one.place == Place::kBytes && one.width > 1 && can_choose(setting, one);
   });
-  if (material_.seal == nullptr || field == fields.end()) return body;
+  auto sealed = setting.exchange.front();
+  sealed.bytes.back() ^= std::byte{1};
+  seal(material_, sealed);
+  if (field == fields.end() || sealed != setting.exchange.front()) return body;
   const auto own = field_value(*field, setting.message.raw);
   for (int low = 0; low < 256; ++low) {
     auto raw = setting.message.raw;
@@ -207,6 +199,7 @@ Script Exercises::lengths(const Setting& setting) const {
     if (size + kMost < bytes.size() || size == bytes.size()) continue;
     add(body, setting.back);
     add(body, sending(setting.exchange, cut(bytes, size)));
+    add(body, setting.telling);
     add(body, setting.exchange);
     look(body, size);
   }
@@ -264,7 +257,8 @@ Script Exercises::values(const Setting& setting, const Field& field) const {
   };
   if (field.place == Place::kPiece) {
     for (const auto& named : field.values) add_text(named.name);
-    for (const auto* const odd : {"+1", "01", " 1", "0x1", "--1", "1.0", "1 ", "1e1", "1\v", ""}) {
+    for (const auto* const odd : {"+1", "01", " 1", "0x1", "--1", "1.0", "1 ", "1e1", "1\v", "08",
+                                  "-09", "010", "", "-0"}) {
       add_text(odd);
     }
     if (!field.values.empty()) return body;

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "emulators/campaign/repertoire.hpp"
 
@@ -36,6 +38,42 @@ class Exercises {
   [[nodiscard]] Script watched_pairs(const Setting& setting) const;
   [[nodiscard]] Script watched_values(const Setting& setting, const Field& field) const;
 
+  // Of all fields at once.
+  /// All that can be chosen, with other numbers each time: each byte has had each value then, each
+  /// field each edge.
+  [[nodiscard]] Script all_fields(const Setting& setting) const;
+  /// Each kind of message after it, when its fields were as large as can be, and when it was
+  /// refused.
+  [[nodiscard]] Script mixed_pairs(const Setting& setting) const;
+  /// The forms that sessions have it in, also with odd numbers in all of its floats.
+  [[nodiscard]] Script variants(const Setting& setting) const;
+  /// Its floats at many small values, with time for a tick after each.
+  [[nodiscard]] Script sweep(const Setting& setting) const;
+  /// The bytes that begin or end messages, at each place in it.
+  [[nodiscard]] Script marked(const Setting& setting) const;
+  /// On a bus: what was chosen once is read again and again, also as it changes.
+  [[nodiscard]] Script reads_again(const Setting& setting) const;
+  /// On a bus: cut short, again and again, and with each last byte.
+  [[nodiscard]] Script cut_copies(const Setting& setting) const;
+
+  // Of several messages, in the state where this one is looked at.
+  /// All sequences of three kinds, or of three forms of some.
+  [[nodiscard]] Script sequences(const Setting& setting) const;
+  /// The same, some at a time in one piece.
+  [[nodiscard]] Script bursts(const Setting& setting) const;
+
+  // Of lines.
+  /// Each of its bytes wrong, or missing.
+  [[nodiscard]] Script misspelt(const Setting& setting) const;
+  /// By a client that leaves in the middle of it, before it comes from another one.
+  [[nodiscard]] Script half_lines(const Setting& setting) const;
+  /// As long as lines of each length, by what means nothing.
+  [[nodiscard]] Script padded(const Setting& setting) const;
+  /// Two odd bytes at its end.
+  [[nodiscard]] Script odd_ends(const Setting& setting) const;
+  /// After many odd bytes that are alike, or many ends of lines.
+  [[nodiscard]] Script after_runs(const Setting& setting) const;
+
   /// Not a field that is always the same, or is made right again.
   [[nodiscard]] bool can_choose(const Setting& setting, const Field& field) const;
 
@@ -47,6 +85,17 @@ class Exercises {
   [[nodiscard]] bool strays(const Script& script) const;
   void add_watched(Script& body, const Script& odd) const;
   void look(Script& body, std::size_t which) const;
+  /// Fields that can be chosen and leave the message of that kind and form.
+  [[nodiscard]] std::vector<Field> free_fields(const Setting& setting) const;
+  /// With a number for each field; smaller ones where the guard would refuse it. Empty: it would
+  /// refuse these, too.
+  using NumberOf = std::function<std::int64_t(const Field& field)>;
+  [[nodiscard]] Script with_all(const Setting& setting, const std::vector<Field>& fields,
+                                const NumberOf& number_of) const;
+  [[nodiscard]] std::vector<Script> refused_forms(const Setting& setting) const;
+  [[nodiscard]] std::vector<Script> symbols(const Setting& setting) const;
+  void add_apart(Script& body, const Script& exchange) const;
+  void add_told(Script& body, const Setting& setting, const Script& exchange) const;
 
   const Material& material_;
   const Repertoire& repertoire_;

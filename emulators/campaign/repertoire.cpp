@@ -80,7 +80,13 @@ Repertoire::Repertoire(const Material& material, std::uint64_t seed)
   // What a session has had before, only the session itself says.
   if (material_.kind != LinkKind::kSession) rehearsal_.begin_after(samples_);
   if (material_.kind == LinkKind::kBus) find_motion(frequent);
-  for (auto* const kind : frequent) kinds_.push_back(in_two_states(std::move(kind->settings)));
+  for (auto* const kind : frequent) {
+    auto& settings = kinds_.emplace_back(in_two_states(std::move(kind->settings)));
+    for (auto& setting : settings) {
+      setting.telling = telling_of(setting);
+      for (const auto& [size, exchange] : kind->of_size) setting.variants.push_back(exchange);
+    }
+  }
 }
 
 /// Where some may be sent by themselves, only those.
@@ -152,13 +158,18 @@ void Repertoire::note_messages(const Script& session, std::map<std::string, Kind
     const auto last = static_cast<std::ptrdiff_t>(end_of_exchange(session, place));
     Script exchange;
     add(exchange, Script(begin, session.begin() + last + 1));
+    kind.of_size.try_emplace(exchange.front().bytes.size(), exchange);
     if (exchange.size() > 1 && kind.looks.size() < kMostLooks) kind.looks.push_back(exchange);
     if (std::exchange(name_before, name) == name || ++times[name] > kMostOfOneSession) continue;
     if (kind.settings.size() >= kMostSettings) continue;
     Script before(session.begin(), begin);
     auto back = last_sent(before, kBack);
-    kind.settings.push_back(
-        {std::move(before), std::move(exchange), std::move(back), std::move(messages.front())});
+    kind.settings.push_back({std::move(before),
+                             std::move(exchange),
+                             std::move(back),
+                             std::move(messages.front()),
+                             {},
+                             {}});
   }
 }
 
@@ -201,6 +212,27 @@ Setting Repertoire::led_to(Setting setting) const {
 
 std::size_t Repertoire::effect_of(const Setting& setting) const {
   return difference_of(said_after(setting, {}), said_after(setting, setting.exchange));
+}
+
+/// The first look that has another answer after it, and has it for some time; or, if there is none,
+/// that has another one.
+Script Repertoire::telling_of(const Setting& setting) const {
+  Script telling;
+  for (const auto& one : looks_) {
+    const auto look = to(setting.exchange.front().id, one);
+    const auto said = [&](const Script& exchange) {
+      return rehearsal_.said_after(setting.before, exchange, joined(look, look, kWatched));
+    };
+    const auto after = said(setting.exchange);
+    if (difference_of(said({}), after) == 0) continue;
+    const auto is_lasting = [](const std::string& twice) {
+      const auto half = twice.size() / 2;
+      return twice.substr(0, half) == twice.substr(half);
+    };
+    if (std::ranges::all_of(after, is_lasting)) return look;
+    if (telling.empty()) telling = look;
+  }
+  return telling;
 }
 
 /// And in another state than that.
@@ -257,7 +289,8 @@ void Repertoire::find_motion(const std::vector<Kind*>& kinds) {
 std::vector<Script> Repertoire::variants_of(const std::vector<Setting>& settings) const {
   constexpr std::size_t kMost = 5;
   std::vector<Script> variants;
-  for (const auto& [before, exchange, back, message] : settings) {
+  for (const auto& setting : settings) {
+    const auto& exchange = setting.exchange;
     const auto is_same = [&](const Script& one) {
       return one.front().bytes == exchange.front().bytes;
     };

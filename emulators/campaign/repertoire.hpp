@@ -19,6 +19,8 @@ struct Setting {
   Script exchange;  ///< it, and on a bus what is read after it
   Script back;      ///< the last that was sent before it: leads into the same state again
   Message message;  ///< that it is
+  Script telling;   ///< on a bus: what asks for what it changes; empty: nothing does
+  std::vector<Script> variants;  ///< the exchange with this message in other forms
 };
 
 /// What can be said to a device, out of sessions: each kind of message where it is worth looking
@@ -48,6 +50,7 @@ class Repertoire {
     std::size_t times{};        ///< that it was met
     std::vector<Script> looks;  ///< on a bus: exchanges that may ask
     std::vector<Setting> settings;
+    std::map<std::size_t, Script> of_size;  ///< an exchange with each size of the message
   };
   /// Where a message may be looked at, and what a sound device says after it there.
   struct Trial {
@@ -69,6 +72,7 @@ class Repertoire {
   [[nodiscard]] std::vector<Setting> in_two_states(std::vector<Setting> all) const;
   [[nodiscard]] Setting led_to(Setting setting) const;
   [[nodiscard]] std::size_t effect_of(const Setting& setting) const;
+  [[nodiscard]] Script telling_of(const Setting& setting) const;
   [[nodiscard]] std::vector<Setting> where_it_does_most(const std::vector<Setting>& all) const;
 
   const Material& material_;

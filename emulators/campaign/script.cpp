@@ -129,6 +129,12 @@ Script joined(Script script, const Script& more, Duration pause) {
   return script;
 }
 
+KeptRecord border(std::string_view dir, std::uint32_t connection, std::string_view how) {
+  return {.kind = LinkKind::kEvents,
+          .direction = Direction::kToDevice,
+          .details = fmt::format(R"("dir":"{}","conn":{},"text":"{}")", dir, connection, how)};
+}
+
 bool is_end(const KeptRecord& record) {
   return record.kind == LinkKind::kEvents && event_of(record) == "disconnect";
 }
@@ -151,11 +157,9 @@ Script with_ends(Script script) {
   }
   const auto end = Instant{length_of(script)};
   for (const auto id : open) {
-    script.push_back(
-        {.time = end,
-         .kind = LinkKind::kEvents,
-         .direction = Direction::kToDevice,
-         .details = fmt::format(R"("dir":"disconnect","conn":{},"text":"client-close")", id)});
+    auto last = border("disconnect", static_cast<std::uint32_t>(id), "client-close");
+    last.time = end;
+    script.push_back(std::move(last));
   }
   return script;
 }

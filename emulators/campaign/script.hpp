@@ -39,6 +39,10 @@ void add(Script& script, const Script& more);
 /// `more` after `script`, `pause` later.
 [[nodiscard]] Script joined(Script script, const Script& more, Duration pause);
 
+/// How a connection begins or ends: `dir` and `how` as recordings have them.
+[[nodiscard]] KeptRecord border(std::string_view dir, std::uint32_t connection,
+                                std::string_view how);
+
 /// Whether it ends a connection, or the half of it.
 [[nodiscard]] bool is_end(const KeptRecord& record);
 

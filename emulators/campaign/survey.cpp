@@ -31,16 +31,26 @@ void Survey::plan() {
       }
     }
   };
-  of_all(0, {&Exercises::some_copies, &Exercises::spoiled_copies, &Exercises::watched_lengths,
-             &Exercises::watched_pairs, &Exercises::pairs});
+  const auto of_first = [this](std::initializer_list<Exercise> exercises) {
+    if (repertoire_.kinds().empty()) return;
+    for (const auto exercise : exercises) plan(repertoire_.kinds().front().front(), exercise);
+  };
+  of_all(0, {&Exercises::some_copies, &Exercises::spoiled_copies});
+  of_first({&Exercises::sequences, &Exercises::bursts, &Exercises::after_runs, &Exercises::padded,
+            &Exercises::odd_ends, &Exercises::marked});
+  of_all(0,
+         {&Exercises::all_fields, &Exercises::variants, &Exercises::reads_again, &Exercises::sums});
+  const auto many_at_once = cases_.size();
+  of_all(0, {&Exercises::watched_lengths, &Exercises::watched_pairs, &Exercises::pairs,
+             &Exercises::half_lines, &Exercises::misspelt, &Exercises::mixed_pairs,
+             &Exercises::cut_copies, &Exercises::sweep});
   const auto idle_ones = plan_values(0, &Exercises::values);
   of_all(0, {&Exercises::lengths, &Exercises::odd_bytes});
   for (const auto& one : repertoire_.looks()) {
     cases_.emplace_back([this, &one] { return whole({}, many_copies_of(one)); });
   }
   const auto watched_idle_ones = plan_values(0, &Exercises::watched_values);
-  if (!repertoire_.kinds().empty()) plan(repertoire_.kinds().front().front(), &Exercises::long_gap);
-  of_all(0, {&Exercises::sums});
+  of_first({&Exercises::long_gap});
   const auto other_idle_ones = plan_values(1, &Exercises::values);
   of_all(1, {&Exercises::some_copies, &Exercises::pairs});
   of_all(0, {&Exercises::sizes});
@@ -48,10 +58,25 @@ void Survey::plan() {
     cases_.insert(cases_.end(), late->begin(), late->end());
   }
   of_all(0, {&Exercises::many_copies, &Exercises::long_gap});
+  put_short_ones_first(many_at_once);
+}
+
+/// From that place on: in the time of a long one several short ones tell more.
+void Survey::put_short_ones_first(std::size_t begin) {
+  constexpr std::array kClasses{500ms, 1000ms, 2000ms, 4000ms};
+  std::vector<std::pair<std::ptrdiff_t, Case>> ranked;
+  for (auto i = begin; i < cases_.size(); ++i) {
+    const auto place = std::ranges::lower_bound(kClasses, length_of(cases_[i]()));
+    ranked.emplace_back(place - kClasses.begin(), std::move(cases_[i]));
+  }
+  std::ranges::stable_sort(ranked, {}, [](const auto& one) { return one.first; });
+  for (auto& [rank, one] : ranked) cases_[begin++] = std::move(one);
 }
 
 void Survey::plan(const Setting& setting, Exercise exercise) {
-  if ((exercises_.*exercise)(setting).empty()) return;  // nothing of the kind on this link
+  auto body = (exercises_.*exercise)(setting);
+  if (material_.permit) material_.permit(body);
+  if (body.empty()) return;  // nothing of the kind on this link, or that the guard lets pass
   cases_.emplace_back(
       [this, &setting, exercise] { return whole(setting, (exercises_.*exercise)(setting)); });
 }
@@ -70,7 +95,9 @@ std::vector<Survey::Case> Survey::plan_values(std::size_t state, OfField of_fiel
       // The code of one message makes another of it: once is enough.
       if (&field == code_in(setting.message) && &kind != &repertoire_.kinds().front()) continue;
       if (!exercises_.can_choose(setting, field)) continue;
-      if ((exercises_.*of_field)(setting, field).empty()) continue;
+      auto body = (exercises_.*of_field)(setting, field);
+      if (material_.permit) material_.permit(body);
+      if (body.empty()) continue;
       auto& cases = matters(setting, field) ? cases_ : idle_ones;
       cases.emplace_back([this, &setting, &field, of_field] {
         return whole(setting, (exercises_.*of_field)(setting, field));

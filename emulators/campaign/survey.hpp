@@ -34,6 +34,7 @@ class Survey {
   using Case = std::function<Script()>;
 
   void plan();
+  void put_short_ones_first(std::size_t begin);
   void plan(const Setting& setting, Exercise exercise);
   [[nodiscard]] std::vector<Case> plan_values(std::size_t state, OfField of_field);
   [[nodiscard]] bool matters(const Setting& setting, const Field& field);

@@ -154,6 +154,8 @@ class Judge {
   struct Difference {
     Symptom symptom;
     RecordingDifference difference;
+    bool is_timing{};       ///< a model comes past what the target says, a little earlier or later
+    bool is_agreed = true;  ///< all models say the same there, so that it is no matter of time
   };
 
   /// What no model explains, in order of time, as long as `goes_on(difference)` says so. Each
@@ -172,11 +174,12 @@ class Judge {
         first = std::move(said);
         common = std::move(found);
       } else {
-        std::erase_if(common, [&](Difference& one) { return !is_among(one, found); });
+        std::erase_if(common, [&](Difference& one) { return !is_among(one, found, *first); });
       }
       if (common.empty()) return;
     }
     for (auto& one : common) {
+      if (one.is_timing && !(one.is_agreed && heard.models.size() > 1)) continue;
       if (!goes_on(std::move(one))) return;
     }
   }
@@ -197,22 +200,22 @@ class Judge {
                    .actual = {},
                    .time = difference.time()});
       if (!symptom) continue;
-      if (!is_one_sided && is_only_early_or_late(difference, *symptom, model)) continue;
-      all.push_back({*std::move(symptom), std::move(difference)});
+      const bool is_timing = !is_one_sided && is_only_early_or_late(difference, *symptom, model);
+      all.push_back({*std::move(symptom), std::move(difference), is_timing, !is_one_sided});
     }
     return all;
   }
 
   /// Whether another model differs there, too: from the same message of the target, or by one of
-  /// the same kind that the target lacks. Only what is wrong by both stays wrong.
-  [[nodiscard]] bool is_among(Difference& one, const std::vector<Difference>& others) const {
+  /// the same kind that the target lacks. Only what is wrong by both stays wrong. `model` is what
+  /// `one` was found beside.
+  [[nodiscard]] bool is_among(Difference& one, const std::vector<Difference>& others,
+                              const RecordedMessages& model) const {
     const auto other = std::ranges::find_if(others, [&](const Difference& some) {
       if (one.difference.after != some.difference.after) return false;
       if (one.difference.after != nullptr) return true;
       return one.difference.lane == some.difference.lane &&
-             one.symptom.answer == some.symptom.answer &&
-             std::chrono::abs(one.symptom.time - some.symptom.time) <=
-                 2 * judging_.rules.time_tolerance;
+             one.symptom.answer == some.symptom.answer && is_one_place(one, some, model);
     });
     if (other == others.end()) return false;
     std::vector<std::string> both;
@@ -220,7 +223,22 @@ class Judge {
       return std::ranges::find(other->symptom.parts, part) != other->symptom.parts.end();
     });
     if (!both.empty()) one.symptom.parts = std::move(both);
+    one.is_timing = one.is_timing || other->is_timing;
+    one.is_agreed = one.is_agreed && other->is_agreed &&
+                    sides_of(one.difference, one.symptom.parts).first ==
+                        sides_of(other->difference, one.symptom.parts).first;
     return true;
+  }
+
+  /// Of many on end that are alike, nobody can say which one is missing.
+  [[nodiscard]] bool is_one_place(const Difference& one, const Difference& other,
+                                  const RecordedMessages& model) const {
+    const auto [begin, end] = std::minmax(one.symptom.time, other.symptom.time);
+    if (end - begin <= 2 * judging_.rules.time_tolerance) return true;
+    return std::ranges::all_of(model.lanes().at(one.difference.lane), [&](const auto& said) {
+      const auto time = said.message.time;
+      return time < begin || time > end || name_of(said) == one.symptom.answer;
+    });
   }
 
   /// The symptom without what is no news; none if nothing is left.

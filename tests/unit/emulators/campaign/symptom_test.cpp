@@ -82,5 +82,29 @@ TEST(Symptom, IsNoneWhereAModelComesPastApartFromWhatIsNoNews) {
   EXPECT_TRUE(judge(wrong, 12ms, excuses));
 }
 
+/// What comes alike in all of them, whenever it came, is no matter of time.
+TEST(Symptom, IsWhatAllModelsAgreeOnThoughOneComesPast) {
+  const auto sound = board({{10ms, 1}, {20ms, 3}, {30ms, 4}});
+  const auto other = board({{10ms, 1}, {20ms, 1}, {30ms, 4}});
+  const auto stale = board({{10ms, 1}, {20ms, 2}, {30ms, 4}});
+  EXPECT_TRUE(judge({stale, {sound, sound}}, 12ms));
+  EXPECT_FALSE(judge({stale, {sound, other}}, 12ms));
+}
+
+/// Some from `begin` to before `end`, one each 10 ms.
+Heard many(int begin, int end) {
+  Heard heard;
+  for (auto i = begin; i < end; ++i) {
+    auto one = board({{i * 10ms, 1}});
+    heard.said.push_back(std::move(one.said.front()));
+  }
+  return heard;
+}
+
+TEST(Symptom, IsOneMessageLessOfManyThatAreAlikeWhicheverItIs) {
+  EXPECT_TRUE(judge({many(1, 40), {many(0, 40), many(1, 41)}}));
+  EXPECT_FALSE(judge({many(1, 40), {many(0, 40), many(1, 40)}}));
+}
+
 }  // namespace
 }  // namespace armjig::campaign

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exercises with lines: what of a line may be longer than it has to be, and what is no line.
+#include <algorithm>
+
+#include "emulators/campaign/exercises.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+bool is_control(std::byte byte) { return std::to_integer<unsigned>(byte) < ' '; }
+
+/// How many bytes end it.
+std::size_t size_of_end(const std::vector<std::byte>& line) {
+  const auto last = std::find_if_not(line.rbegin(), line.rend(), is_control);
+  return static_cast<std::size_t>(last - line.rbegin());
+}
+
+std::vector<std::byte> with_inserted(std::vector<std::byte> line, std::size_t place,
+                                     const std::vector<std::byte>& bytes) {
+  line.insert(line.begin() + static_cast<std::ptrdiff_t>(place), bytes.begin(), bytes.end());
+  return line;
+}
+
+}  // namespace
+
+Script Exercises::padded(const Setting& setting) const {
+  constexpr std::size_t kMost = 132;
+  Script body;
+  if (material_.kind != LinkKind::kSession) return body;
+  const auto& line = setting.exchange.front().bytes;
+  const auto end = line.size() - size_of_end(line);
+  const auto add_of_size = [&](std::size_t size) {
+    if (size <= line.size()) return;
+    const std::vector blanks(size - line.size(), std::byte{' '});
+    add(body, sending(setting.exchange, with_inserted(line, end, blanks)));
+  };
+  for (std::size_t size = 1; size <= kMost; ++size) add_of_size(size);
+  for (const std::size_t edge : {256, 512, 1024}) {  // with its end, and without
+    for (auto size = edge - 2; size <= edge + 3; ++size) add_of_size(size);
+  }
+  return body;
+}
+
+Script Exercises::misspelt(const Setting& setting) const {
+  constexpr std::byte kOther{'X'};
+  constexpr std::byte kCase{0x20};
+  Script body;
+  if (material_.kind != LinkKind::kSession) return body;
+  const auto& line = setting.exchange.front().bytes;
+  const auto end = line.size() - size_of_end(line);
+  for (std::size_t i = 0; i < end; ++i) {
+    for (const auto odd : {kOther, line[i] ^ kCase}) {
+      auto other = line;
+      other[i] = odd;
+      add(body, sending(setting.exchange, std::move(other)));
+    }
+    auto shorter = line;
+    shorter.erase(shorter.begin() + static_cast<std::ptrdiff_t>(i));
+    add(body, sending(setting.exchange, std::move(shorter)));
+  }
+  return body;
+}
+
+Script Exercises::half_lines(const Setting& setting) const {
+  Script body;
+  const auto& one = setting.exchange.front();
+  if (material_.kind != LinkKind::kSession || one.bytes.size() < 4) return body;
+  auto client = one.id;
+  const auto say = [&](std::vector<std::byte> bytes) {
+    auto record = sending(one, std::move(bytes));
+    record.id = client;
+    add(body, std::move(record));
+  };
+  for (const auto size : {std::size_t{2}, one.bytes.size() / 2, one.bytes.size() - 2}) {
+    for (const auto first : {size, size / 2}) {
+      say(cut(one.bytes, first));
+      if (first < size) {
+        const auto begin = one.bytes.begin();
+        say({begin + static_cast<std::ptrdiff_t>(first),
+             begin + static_cast<std::ptrdiff_t>(size)});
+      }
+      add(body, border("disconnect", client, "client-close"));
+      add(body, border("connect", ++client, "ok"));
+      say(one.bytes);
+      say(one.bytes);
+    }
+  }
+  return body;
+}
+
+Script Exercises::odd_ends(const Setting& setting) const {
+  Script body;
+  if (material_.kind != LinkKind::kSession) return body;
+  const auto& line = setting.exchange.front().bytes;
+  const auto end = line.size() - size_of_end(line);
+  for (const auto one : kOddBytes) {
+    for (const auto two : kOddBytes) {
+      const std::vector odd{static_cast<std::byte>(one), static_cast<std::byte>(two)};
+      add(body, sending(setting.exchange, with_inserted(line, end, odd)));
+    }
+  }
+  return body;
+}
+
+Script Exercises::after_runs(const Setting& setting) const {
+  constexpr std::size_t kTimes = 20;
+  Script body;
+  if (material_.kind != LinkKind::kSession) return body;
+  const auto& line = setting.exchange.front().bytes;
+  const std::vector end(line.end() - static_cast<std::ptrdiff_t>(size_of_end(line)), line.end());
+  std::vector<std::byte> ends;
+  for (std::size_t i = 0; i < kTimes; ++i) {
+    ends.insert(ends.end(), end.begin(), end.end());
+    add(body, sending(setting.exchange, ends));
+    add(body, setting.exchange);
+    add(body, sending(setting.exchange, with_inserted(line, 0, ends)));
+  }
+  for (const auto odd : kOddBytes) {
+    const std::vector run(kTimes, static_cast<std::byte>(odd));
+    add(body, sending(setting.exchange, with_inserted(line, 0, run)));
+    add(body, setting.exchange);
+  }
+  return body;
+}
+
+}  // namespace armjig::campaign

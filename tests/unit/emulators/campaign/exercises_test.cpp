@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emulators/campaign/exercises.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/device.hpp"
+#include "cli/devices/devices.hpp"
+#include "cli/diff.hpp"
+#include "cli/fuzz_material.hpp"
+#include "harness/rig/judge.hpp"
+#include "harness/wire/parol6/frame.hpp"
+
+namespace armjig::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+using Lines = std::vector<std::string>;
+
+/// What a live campaign on a device tries. The device itself is not there.
+class Tried {
+ public:
+  Tried(const std::string& name, const std::string& place)
+      : material_{material_at(name, place)},
+        repertoire_{material_, 1},
+        exercises_{material_, repertoire_} {}
+
+  /// With the kind of message whose name, and that of its code, begin so.
+  [[nodiscard]] const Setting& setting(std::string_view words) const {
+    for (const auto& kind : repertoire_.kinds()) {
+      const auto record = kind.front().exchange.front();
+      if (words_of(record, material_.make_dissector).starts_with(words)) return kind.front();
+    }
+    ADD_FAILURE() << "no session has " << words;
+    return repertoire_.kinds().front().front();
+  }
+  [[nodiscard]] const Exercises& exercises() const { return exercises_; }
+
+ private:
+  static Material material_at(const std::string& name, const std::string& place) {
+    const auto& device = **cli::find_device(cli::shipped_devices(), name);
+    RigOptions live;
+    live.target = parse_target(place).value();
+    live.permissions = Permissions::all();
+    RigOptions model;
+    model.target = parse_target("emulated:?profile=firmware").value();
+    auto material = cli::material_of(device, live, model, 8s).value();
+    material.rules = cli::rules_beside(device, live.target, "").value();
+    return material;
+  }
+
+  Material material_;
+  Repertoire repertoire_;
+  Exercises exercises_;
+};
+
+const Tried& board() {
+  static const Tried kBoard{"parol6", "pty:/tmp/nowhere"};
+  return kBoard;
+}
+const Tried& server() {
+  static const Tried kServer{"kinovazed", "tcp:127.0.0.1:1"};
+  return kServer;
+}
+const Tried& node() {
+  static const Tried kNode{"morap", "i2c:/dev/nowhere"};
+  return kNode;
+}
+
+std::vector<std::byte> code_bytes_of(const KeptRecord& record) {
+  constexpr std::size_t kCode = 40;  // of a frame
+  std::vector<std::byte> codes;
+  for (auto place = kCode; place < record.bytes.size(); place += parol6::kCommandFrameSize) {
+    codes.push_back(record.bytes[place]);
+  }
+  return codes;
+}
+
+Lines lines_in(const Script& script) {
+  Lines lines;
+  for (const auto& record : script) {
+    std::string line;
+    for (const auto byte : record.bytes) line.push_back(static_cast<char>(byte));
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+bool has(const Lines& lines, std::string_view line) {
+  return std::ranges::find(lines, line) != lines.end();
+}
+
+TEST(Exercises, GiveEachByteOfAllFieldsEachValueAsFarAsTheGuardLetsThem) {
+  std::array<std::set<std::byte>, parol6::kCommandFrameSize> seen;
+  for (const auto& record : board().exercises().all_fields(board().setting("command idle"))) {
+    for (std::size_t i = 0; i < record.bytes.size(); ++i) seen.at(i).insert(record.bytes[i]);
+  }
+  constexpr std::size_t kPositionOfJ1 = 4;
+  constexpr std::size_t kSpeedOfJ6 = 37;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(seen.at(kPositionOfJ1 + i).size(), 256U) << i;
+    EXPECT_EQ(seen.at(kSpeedOfJ6 + i).size(), 256U) << i;
+  }
+}
+
+TEST(Exercises, MoveWithSmallNumbersWhatMayNotMoveFast) {
+  const auto jogs = board().exercises().all_fields(board().setting("command jog"));
+  EXPECT_GT(jogs.size(), 400U);
+}
+
+TEST(Exercises, SendAllOrdersOfThreeApartAndTogether) {
+  const auto& setting = board().setting("command idle");
+  std::vector<std::byte> apart;
+  for (const auto& record : board().exercises().sequences(setting)) {
+    apart.push_back(code_bytes_of(record).front());
+  }
+  std::vector<std::byte> together;
+  for (const auto& record : board().exercises().bursts(setting)) {
+    const auto codes = code_bytes_of(record);
+    EXPECT_EQ(codes.size(), 5U);
+    together.insert(together.end(), codes.begin(), codes.end());
+  }
+  const std::array codes{parol6::Command::kEnable, parol6::Command::kDisable,
+                         parol6::Command::kJog};
+  for (const auto one : codes) {
+    for (const auto two : codes) {
+      for (const auto three : codes) {
+        const std::array order{std::byte{static_cast<std::uint8_t>(one)},
+                               std::byte{static_cast<std::uint8_t>(two)},
+                               std::byte{static_cast<std::uint8_t>(three)}};
+        EXPECT_FALSE(std::ranges::search(apart, order).empty());
+        EXPECT_FALSE(std::ranges::search(together, order).empty());
+      }
+    }
+  }
+}
+
+TEST(Exercises, WriteLinesThatAreTooLongAndNearlyRight) {
+  const auto& setting = server().setting("EStop");
+  const auto padded = lines_in(server().exercises().padded(setting));
+  EXPECT_TRUE(has(padded, "EStop" + std::string(35, ' ') + "\r\n"));
+  EXPECT_TRUE(has(padded, "EStop" + std::string(251, ' ') + "\r\n"));
+  const auto misspelt = lines_in(server().exercises().misspelt(setting));
+  for (const auto* const line : {"EStoX\r\n", "EstOp\r\n", "ESto\r\n"}) {
+    EXPECT_EQ(has(misspelt, line), std::string_view{line} != "EstOp\r\n") << line;
+  }
+  EXPECT_TRUE(has(lines_in(server().exercises().odd_ends(setting)), "EStop: \r\n"));
+  std::string ends;
+  for (int i = 0; i < 12; ++i) ends += "\r\n";
+  EXPECT_TRUE(has(lines_in(server().exercises().after_runs(setting)), ends));
+}
+
+TEST(Exercises, LeaveInTheMiddleOfALine) {
+  const auto lines = lines_in(server().exercises().half_lines(server().setting("EStop")));
+  const Lines expected{"EStop", "", "", "EStop\r\n"};
+  EXPECT_FALSE(std::ranges::search(lines, expected).empty());
+}
+
+TEST(Exercises, ReadAgainWhatWasChosenOnce) {
+  const auto& setting = node().setting("select read_position_set");
+  const auto script = node().exercises().reads_again(setting);
+  ASSERT_GT(script.size(), 8U);
+  for (std::size_t i = 1; i <= 8; ++i) {
+    EXPECT_EQ(script[i].direction, Direction::kFromDevice) << i;
+  }
+}
+
+TEST(Exercises, AskForWhatAMessageChanges) {
+  const auto& telling = node().setting("speed").telling;
+  ASSERT_FALSE(telling.empty());
+  EXPECT_EQ(telling.front().bytes.front(), std::byte{0x82});
+}
+
+TEST(Exercises, HaveMessagesOfEachSizeThatSessionsHave) {
+  std::set<std::size_t> sizes;
+  for (const auto& one : node().setting("program").variants) {
+    sizes.insert(one.front().bytes.size());
+  }
+  EXPECT_GT(sizes.size(), 8U);
+}
+
+}  // namespace
+}  // namespace armjig::campaign
