@@ -62,7 +62,7 @@ Script harmless_script(LinkKind kind, std::vector<Bytes> messages, Messages stop
   Script script;
   Instant time{};
   if (kind == LinkKind::kSession) {
-    add(script, campaign::border("connect", kOwnConnection, "ok"));
+    campaign::add(script, campaign::border("connect", kOwnConnection, "ok"));
     time += kPauseAfterQuestion;
     messages.insert(messages.begin(), stop.begin(), stop.end());
   }
@@ -80,7 +80,7 @@ Script harmless_script(LinkKind kind, std::vector<Bytes> messages, Messages stop
   }
   if (kind == LinkKind::kSession) {
     const auto pause = time + kBeforeEnd - script.back().time;
-    add(script, campaign::border("disconnect", kOwnConnection, "client-close"), pause);
+    campaign::add(script, campaign::border("disconnect", kOwnConnection, "client-close"), pause);
   } else if (!script.empty()) {
     const auto again = script;
     for (auto record : again) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -93,7 +94,7 @@ class Campaign {
     if (auto begun = begin(); !begun) return begun;
     const auto end = options_.first_case + options_.most_cases;
     for (auto number = options_.first_case; number < end && !options_.must_stop(); ++number) {
-      if (stage_.can_reset() && history_count_ >= options_.cases_between_resets) {
+      if (stage_.can_reset() && history_.size() >= options_.cases_between_resets) {
         if (auto begun = start_again(); !begun) return begun;
       }
       if (auto done = play_case(number); !done) return done;
@@ -129,7 +130,6 @@ class Campaign {
 
   [[nodiscard]] Outcome<void> start_again() {
     history_.clear();
-    history_count_ = 0;
     if (auto begun = stage_.reset(); !begun) return begun;
     return stage_.can_reset() ? Outcome<void>{} : meet();
   }
@@ -211,13 +211,24 @@ class Campaign {
       return give_up(seen.error());
     }
     if (seen->symptom) return look_into(script, *seen->symptom, number);
-    history_ = joined(std::move(history_), script, kPause);
-    ++history_count_;
+    note_history(script);
     if (state_.shown.add(messages_in(*seen))) {
       state_.worthy.push_back(script);
       if (listener_.on_worthy) listener_.on_worthy(script, number);
     }
     return {};
+  }
+
+  /// No more cases than there are between resets: on a device that nobody can start again it would
+  /// take as long to play all of them again as the campaign has taken.
+  void note_history(const Script& script) {
+    history_.push_back(script);
+    if (history_.size() > options_.cases_between_resets) history_.pop_front();
+  }
+  [[nodiscard]] Script after_history(const Script& script) const {
+    Script whole;
+    for (const auto& one : history_) whole = joined(std::move(whole), one, kPause);
+    return joined(std::move(whole), script, kPause);
   }
 
   [[nodiscard]] static bool is_refusal(const Problem& problem) {
@@ -284,7 +295,7 @@ class Campaign {
     const auto found_after = passed_before_ + since_begin();
     auto is_there = shows_surely(script, symptom);
     if (is_there && !*is_there && !history_.empty()) {
-      script = joined(history_, script, kPause);
+      script = after_history(script);
       is_there = shows_surely(script, symptom);
     }
     if (!is_there) return give_up(is_there.error());
@@ -449,9 +460,8 @@ class Campaign {
   Excuses excuses_at_first_ = options_.excuses;  ///< without what was found
   Excuses excuses_anyway_ = options_.excuses;    ///< with what shows whatever is done
   std::map<std::string, int> of_part_;
-  Script history_;  ///< what was done since the last reset
-  std::size_t history_count_ = 0;
-  std::uint64_t doubts_ = 0;  ///< that there were
+  std::deque<Script> history_;  ///< the last cases since the last reset
+  std::uint64_t doubts_ = 0;    ///< that there were
   Seen last_seen_;
   WallClock::time_point begun_ = WallClock::now();
   Duration passed_before_ = state_.passed;

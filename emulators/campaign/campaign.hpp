@@ -29,7 +29,9 @@ struct CampaignOptions {
   Judging judging{};
   Excuses excuses{};  ///< what is no news from the beginning
   Known known{};
-  std::size_t cases_between_resets = 1;  ///< at least 1; where resetting makes the target new
+  /// At least 1; where resetting makes the target new. Elsewhere so many of the last cases are
+  /// played again with one that shows something.
+  std::size_t cases_between_resets = 1;
   int confirmations = 1;  ///< so often a symptom has to come again, before and after shrinking
   /// So often, each time that a symptom has come again, a sound device in the place of a live
   /// target must not show it.

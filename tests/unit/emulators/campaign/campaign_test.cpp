@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <string>
 
 #include "cli/device.hpp"
@@ -342,6 +343,50 @@ class ChangingStage final : public Stage {
   bool was_begun_ = false;
   int times_ = 0;
 };
+
+/// Of a sound device that nobody can start again it loses an answer, once. Notes how long the
+/// scripts are.
+class OnceSilentStage final : public Stage {
+ public:
+  explicit OnceSilentStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
+  Outcome<void> reset() override { return was_begun_++ > 0 ? Outcome<void>{} : stage_->reset(); }
+  [[nodiscard]] bool can_reset() const override { return false; }
+  Outcome<void> renew_models() override { return {}; }
+  Outcome<BothHeard> play(const Script& script) override {
+    auto heard = stage_->play(script);
+    lengths.push_back(length_of(script));
+    if (heard && lengths.size() == kSilent) heard->target.said.clear();
+    return heard;
+  }
+
+  static constexpr std::size_t kSilent = 40;
+  std::vector<Duration> lengths;
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  int was_begun_ = 0;
+};
+
+TEST(Campaign, PlaysAgainNoMoreThanTheLastCases) {
+  constexpr std::size_t kCases = 4;
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  auto material = cli::material_of(device, emulated(""), emulated(""), 1s).value();
+  OnceSilentStage stage{cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms)};
+  CampaignState state;
+  const CampaignOptions options{.most_cases = 60,
+                                .judging = {device.make_dissector, {}, 20ms},
+                                .cases_between_resets = kCases,
+                                .confirmations = 3};
+  EXPECT_TRUE(run_campaign(stage, material, options, state, {}));
+  EXPECT_EQ(state.unsettled, 1U);
+  const auto last_cases = [&](std::size_t count) {
+    const auto end = stage.lengths.begin() + OnceSilentStage::kSilent;
+    return std::accumulate(end - static_cast<std::ptrdiff_t>(count), end, Duration{});
+  };
+  const auto with_history = stage.lengths.at(OnceSilentStage::kSilent + 1);
+  EXPECT_GT(with_history, last_cases(2));
+  EXPECT_LT(with_history, last_cases(10));
+}
 
 /// Its target never answers.
 class SilentStage final : public Stage {
