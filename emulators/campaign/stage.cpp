@@ -228,7 +228,7 @@ Outcome<void> StageOn<Port>::make_target() {
   constexpr auto kBetween = 20ms;
   target_.reset();
   if (was_open_ && setup_.restart && !setup_.restart()) {
-    return problem(ErrorCode::kBadValue, "--restart", "the command failed");
+    return problem(ErrorCode::kNotFound, "--restart", "the command failed");
   }
   const auto begun = std::chrono::steady_clock::now();
   for (;;) {
