@@ -35,7 +35,8 @@ Script Exercises::padded(const Setting& setting) const {
     add(body, sending(setting.exchange, with_inserted(line, end, blanks)));
   };
   for (std::size_t size = 1; size <= kMost; ++size) add_of_size(size);
-  for (const std::size_t edge : {256, 512, 1024}) {  // with its end, and without
+  for (const auto edge :
+       {std::size_t{256}, std::size_t{512}, std::size_t{1024}}) {  // with its end, and without
     for (auto size = edge - 2; size <= edge + 3; ++size) add_of_size(size);
   }
   return body;
