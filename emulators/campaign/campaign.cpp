@@ -48,7 +48,10 @@ bool is_vague(const Symptom& symptom) {
   return is_of(symptom, Change::kMissing) || is_of(symptom, Change::kExtra);
 }
 
+/// Two that are vague are taken for the same: which message is one too many, and of which kind one
+/// is missing, depends on which others they come beside.
 bool is_same(const Symptom& one, const Symptom& other) {
+  if (is_vague(one) && is_vague(other)) return true;
   return one.answer == other.answer &&
          (is_vague(one) || is_vague(other) ||
           std::ranges::find_first_of(one.parts, other.parts) != one.parts.end());

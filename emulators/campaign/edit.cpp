@@ -115,6 +115,12 @@ std::vector<std::byte> cut(std::vector<std::byte> bytes, std::size_t size) {
   return bytes;
 }
 
+bool is_permitted(const Material& material, const Script& script) {
+  auto permitted = script;
+  if (material.permit) material.permit(permitted);
+  return permitted.size() == script.size();
+}
+
 void hurry(Script& script, Duration longest) {
   Duration saved{};
   Instant last{};

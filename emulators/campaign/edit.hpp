@@ -59,6 +59,9 @@ void seal(const Material& material, KeptRecord& record);
 /// Its first bytes; more than there are: some that are not zero at the end.
 [[nodiscard]] std::vector<std::byte> cut(std::vector<std::byte> bytes, std::size_t size);
 
+/// Whether all of it may be sent, wherever the device is.
+[[nodiscard]] bool is_permitted(const Material& material, const Script& script);
+
 /// With no pause longer than that.
 void hurry(Script& script, Duration longest);
 

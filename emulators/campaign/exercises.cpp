@@ -16,6 +16,32 @@ using namespace std::chrono_literals;
 constexpr int kTimesWatched = 7;
 constexpr int kSomeTimes = 20;
 
+/// As readers of numbers may or may not take them.
+constexpr std::array<std::string_view, 24> kOddNumbers{"+1",
+                                                       "01",
+                                                       " 1",
+                                                       "0x1",
+                                                       "--1",
+                                                       "1.0",
+                                                       "1 ",
+                                                       "1e1",
+                                                       "1\v",
+                                                       "08",
+                                                       "-09",
+                                                       "010",
+                                                       "",
+                                                       "-0",
+                                                       " ",
+                                                       "+",
+                                                       "-",
+                                                       "+-1",
+                                                       "000000000000000000000001",
+                                                       "12345678901234567890123",
+                                                       "1234567890",
+                                                       "-2147483649",
+                                                       "4294967297",
+                                                       "1\t"};
+
 void repeat(Script& body, const KeptRecord& record, int count, Duration pause) {
   for (int i = 0; i < count; ++i) add(body, record, pause);
 }
@@ -183,9 +209,7 @@ Script Exercises::sums(const Setting& setting) const {
   for (int low = 0; low < 256; ++low) {
     auto raw = setting.message.raw;
     set_field_value(*field, raw, (own & ~std::int64_t{255}) | low);
-    auto exchange = setting.exchange;
-    if (put(raw, exchange.front())) seal(material_, exchange.front());
-    add(body, exchange);
+    add(body, with_message(setting, raw));
     look(body, static_cast<std::size_t>(low));
   }
   return body;
@@ -257,10 +281,7 @@ Script Exercises::values(const Setting& setting, const Field& field) const {
   };
   if (field.place == Place::kPiece) {
     for (const auto& named : field.values) add_text(named.name);
-    for (const auto* const odd : {"+1", "01", " 1", "0x1", "--1", "1.0", "1 ", "1e1", "1\v", "08",
-                                  "-09", "010", "", "-0"}) {
-      add_text(odd);
-    }
+    for (const auto odd : kOddNumbers) add_text(odd);
     if (!field.values.empty()) return body;
   }
   if (field.encoding == Encoding::kFloatLittle) {
@@ -289,6 +310,24 @@ Script Exercises::values(const Setting& setting, const Field& field) const {
   return body;
 }
 
+/// So far apart that each answer is known by its time.
+Script Exercises::odd_numbers(const Setting& setting) const {
+  Script body;
+  const auto& fields = setting.message.fields;
+  const auto number = std::ranges::find_if(fields, [](const Field& field) {
+    return field.place == Place::kPiece && field.values.empty();
+  });
+  if (number == fields.end()) return body;
+  const auto apart = std::max(material_.rules.time_tolerance, kStep) + kStep;
+  for (const auto odd : kOddNumbers) {
+    auto record = setting.exchange.front();
+    set_piece(*number, record.bytes, odd);
+    add(body, std::move(record), apart);
+    add(body, setting.exchange.front(), apart);
+  }
+  return body;
+}
+
 Script Exercises::with(const Setting& setting, const Field& field, std::int64_t number) const {
   return with_number(material_, setting, {&field, 1}, number);
 }
@@ -297,6 +336,11 @@ Script Exercises::with(const Setting& setting, const Field& field, std::int64_t 
 Script Exercises::with_bits(const Setting& setting, const Field& field, std::int64_t bits) const {
   auto raw = setting.message.raw;
   set_field_value(field, raw, bits);
+  return with_message(setting, raw);
+}
+
+/// With that message in place of its own, made right again.
+Script Exercises::with_message(const Setting& setting, Bytes raw) const {
   auto exchange = setting.exchange;
   if (put(raw, exchange.front())) seal(material_, exchange.front());
   return exchange;

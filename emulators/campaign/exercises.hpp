@@ -65,6 +65,8 @@ class Exercises {
   // Of lines.
   /// Each of its bytes wrong, or missing.
   [[nodiscard]] Script misspelt(const Setting& setting) const;
+  /// Several in one piece, of which two are odd: by their ends, their case, or as nothing.
+  [[nodiscard]] Script in_one_segment(const Setting& setting) const;
   /// By a client that leaves in the middle of it, before it comes from another one.
   [[nodiscard]] Script half_lines(const Setting& setting) const;
   /// As long as lines of each length, by what means nothing.
@@ -74,6 +76,9 @@ class Exercises {
   /// After many odd bytes that are alike, or many ends of lines.
   [[nodiscard]] Script after_runs(const Setting& setting) const;
 
+  /// With odd numbers in the first piece that is one.
+  [[nodiscard]] Script odd_numbers(const Setting& setting) const;
+
   /// Not a field that is always the same, or is made right again.
   [[nodiscard]] bool can_choose(const Setting& setting, const Field& field) const;
 
@@ -81,6 +86,7 @@ class Exercises {
   [[nodiscard]] Script with(const Setting& setting, const Field& field, std::int64_t number) const;
   [[nodiscard]] Script with_bits(const Setting& setting, const Field& field,
                                  std::int64_t bits) const;
+  [[nodiscard]] Script with_message(const Setting& setting, Bytes raw) const;
   [[nodiscard]] bool can_be_watched(const Setting& setting) const;
   [[nodiscard]] bool strays(const Script& script) const;
   void add_watched(Script& body, const Script& odd) const;

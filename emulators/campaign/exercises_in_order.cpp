@@ -44,9 +44,7 @@ std::vector<Script> Exercises::symbols(const Setting& setting) const {
   std::vector<Script> filled;
   for (const auto& kind : repertoire_.kinds()) {
     const auto exchange = to(setting.exchange.front().id, kind.front().exchange);
-    auto permitted = exchange;
-    if (material_.permit) material_.permit(permitted);
-    if (permitted.empty() || exchange.size() > 1 || strays(exchange)) continue;
+    if (exchange.size() > 1 || strays(exchange) || !is_permitted(material_, exchange)) continue;
     if (plain.size() < kMostKinds) plain.push_back(exchange);
     if (material_.kind != LinkKind::kStream || filled.size() == kMostFilled) continue;
     const auto fields = free_fields(kind.front());

@@ -72,21 +72,19 @@ std::vector<Field> Exercises::free_fields(const Setting& setting) const {
 Script Exercises::with_all(const Setting& setting, const std::vector<Field>& fields,
                            const NumberOf& number_of) const {
   for (const auto smaller : {0, 8, 16}) {
-    auto exchange = setting.exchange;
-    auto& record = exchange.front();
     auto raw = setting.message.raw;
+    auto pieces = setting.exchange;
     for (const auto& field : fields) {
       const auto number = number_of(field) >> std::min(smaller, 8 * std::max(field.width - 1, 0));
       if (field.place == Place::kPiece) {
-        set_piece(field, record.bytes, std::to_string(number));
+        set_piece(field, pieces.front().bytes, std::to_string(number));
       } else {
         set_field_value(field, raw, number);
       }
     }
-    if (fields.front().place == Place::kBytes && put(raw, record)) seal(material_, record);
-    auto permitted = exchange;
-    if (material_.permit) material_.permit(permitted);
-    if (permitted.size() == exchange.size()) return exchange;
+    const bool is_of_pieces = fields.front().place == Place::kPiece;
+    auto exchange = is_of_pieces ? std::move(pieces) : with_message(setting, raw);
+    if (is_permitted(material_, exchange)) return exchange;
   }
   return {};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exercises with lines: what of a line may be longer than it has to be, and what is no line.
 #include <algorithm>
+#include <cctype>
+#include <string_view>
 
 #include "emulators/campaign/exercises.hpp"
 
@@ -8,6 +10,11 @@ namespace armjig::campaign {
 namespace {
 
 bool is_control(std::byte byte) { return std::to_integer<unsigned>(byte) < ' '; }
+
+std::byte in_case(std::byte byte, bool is_upper) {
+  const auto letter = std::to_integer<int>(byte);
+  return static_cast<std::byte>(is_upper ? std::toupper(letter) : std::tolower(letter));
+}
 
 /// How many bytes end it.
 std::size_t size_of_end(const std::vector<std::byte>& line) {
@@ -58,6 +65,36 @@ Script Exercises::misspelt(const Setting& setting) const {
     auto shorter = line;
     shorter.erase(shorter.begin() + static_cast<std::ptrdiff_t>(i));
     add(body, sending(setting.exchange, std::move(shorter)));
+  }
+  return body;
+}
+
+Script Exercises::in_one_segment(const Setting& setting) const {
+  Script body;
+  if (material_.kind != LinkKind::kSession) return body;
+  const auto& line = setting.exchange.front().bytes;
+  const auto end = line.size() - size_of_end(line);
+  const std::vector<std::byte> text(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(end));
+  std::vector<std::vector<std::byte>> forms{line};
+  for (const std::string_view odd :
+       {"\n", "\r", "\r\r\n", "\n\r", " \r\n", ":\r\n", "", "\0\r\n"}) {
+    auto& form = forms.emplace_back(text);
+    for (const auto letter : odd) form.push_back(static_cast<std::byte>(letter));
+  }
+  for (const bool is_upper : {false, true}) {
+    auto& form = forms.emplace_back(line);
+    for (auto& byte : form) byte = in_case(byte, is_upper);
+  }
+  forms.push_back(with_inserted(line, 0, {std::byte{' '}}));
+  forms.emplace_back(line.begin() + static_cast<std::ptrdiff_t>(end), line.end());
+  for (const auto& first : forms) {
+    for (const auto& second : forms) {
+      auto piece = first;
+      for (const auto* const next : {&second, &line, &line}) {
+        piece.insert(piece.end(), next->begin(), next->end());
+      }
+      add(body, sending(setting.exchange, std::move(piece)));
+    }
   }
   return body;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "emulators/campaign/edit.hpp"
 #include "emulators/campaign/talk.hpp"
 #include "harness/compare/recording_diff.hpp"
 
@@ -64,9 +65,7 @@ Rehearsal::Said Rehearsal::said_after(const Script& before, const Script& exchan
 }
 
 bool Rehearsal::goes_on_after(const Script& script, const Script& question) const {
-  auto permitted = script;
-  if (material_.permit) material_.permit(permitted);
-  if (!is_possible() || permitted.size() < script.size()) return false;
+  if (!is_possible() || !is_permitted(material_, script)) return false;
   return std::ranges::all_of(pasts_,
                              [&](const Script& past) { return goes_on(past, script, question); });
 }

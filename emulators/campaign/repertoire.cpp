@@ -91,14 +91,10 @@ Repertoire::Repertoire(const Material& material, std::uint64_t seed)
 
 /// Where some may be sent by themselves, only those.
 void Repertoire::keep_permitted(std::vector<Setting>& settings) const {
-  if (!material_.permit) return;
-  const auto is_permitted = [this](const Setting& one) {
-    auto exchange = one.exchange;
-    material_.permit(exchange);
-    return exchange.size() == one.exchange.size();
+  const auto may_be_sent = [this](const Setting& one) {
+    return is_permitted(material_, one.exchange);
   };
-  if (std::ranges::any_of(settings, is_permitted))
-    std::erase_if(settings, std::not_fn(is_permitted));
+  if (std::ranges::any_of(settings, may_be_sent)) std::erase_if(settings, std::not_fn(may_be_sent));
 }
 
 /// Of each kind of exchange that asks, the first.

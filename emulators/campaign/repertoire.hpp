@@ -21,6 +21,7 @@ struct Setting {
   Message message;  ///< that it is
   Script telling;   ///< on a bus: what asks for what it changes; empty: nothing does
   std::vector<Script> variants;  ///< the exchange with this message in other forms
+  Duration rest = kStep;         ///< after what is before it
 };
 
 /// What can be said to a device, out of sessions: each kind of message where it is worth looking

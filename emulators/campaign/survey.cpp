@@ -5,7 +5,10 @@
 #include <array>
 #include <chrono>
 #include <initializer_list>
+#include <iterator>
 #include <utility>
+
+#include "emulators/campaign/tour.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -15,6 +18,7 @@ using namespace std::chrono_literals;
 /// Lines that come no faster do not wait for a server that reads every 10 ms: a client that leaves
 /// meanwhile may or may not have its answers.
 constexpr Duration kTick = 12ms;
+constexpr Duration kShort = 1000ms;
 
 }  // namespace
 
@@ -35,9 +39,15 @@ void Survey::plan() {
     if (repertoire_.kinds().empty()) return;
     for (const auto exercise : exercises) plan(repertoire_.kinds().front().front(), exercise);
   };
+  const auto of_one = [this](Exercise exercise) {
+    for (const auto& kind : repertoire_.kinds()) {
+      if (plan(kind.front(), exercise)) return;
+    }
+  };
   of_all(0, {&Exercises::some_copies, &Exercises::spoiled_copies});
   of_first({&Exercises::sequences, &Exercises::bursts, &Exercises::after_runs, &Exercises::padded,
-            &Exercises::odd_ends, &Exercises::marked});
+            &Exercises::odd_ends, &Exercises::marked, &Exercises::in_one_segment});
+  of_one(&Exercises::odd_numbers);
   of_all(0,
          {&Exercises::all_fields, &Exercises::variants, &Exercises::reads_again, &Exercises::sums});
   const auto many_at_once = cases_.size();
@@ -59,11 +69,47 @@ void Survey::plan() {
   }
   of_all(0, {&Exercises::many_copies, &Exercises::long_gap});
   put_short_ones_first(many_at_once);
+  put_after_short_ones(tour_cases(), many_at_once);
+}
+
+/// Single messages in each state, then in the middle of what they began; and more of what is
+/// answered otherwise in a state that takes time to come to.
+std::vector<Survey::Case> Survey::tour_cases() {
+  constexpr Duration kLongest = 60s;
+  std::vector<Case> cases;
+  Tour tour{material_, repertoire_};
+  const auto add_parts = [&] {
+    for (auto part = tour.next(kLongest); !part.empty(); part = tour.next(kLongest)) {
+      cases.emplace_back([part] { return part; });
+    }
+  };
+  add_parts();
+  seldom_ = tour.where_seldom_answered();
+  const auto of_seldom = [&](Exercise exercise, auto place) {
+    for (const auto& setting : seldom_) {
+      if (auto one = case_of(setting, exercise)) place = cases.insert(place, *std::move(one)) + 1;
+    }
+  };
+  of_seldom(&Exercises::odd_numbers, cases.begin());
+  tour.go_deeper();
+  add_parts();
+  for (const auto exercise : {&Exercises::some_copies, &Exercises::pairs, &Exercises::all_fields}) {
+    of_seldom(exercise, cases.end());
+  }
+  return cases;
+}
+
+/// What takes long and is found by nothing else.
+void Survey::put_after_short_ones(std::vector<Case> cases, std::size_t begin) {
+  const auto from = cases_.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto is_long = [](const Case& one) { return length_of(one()) > kShort; };
+  cases_.insert(std::find_if(from, cases_.end(), is_long), std::make_move_iterator(cases.begin()),
+                std::make_move_iterator(cases.end()));
 }
 
 /// From that place on: in the time of a long one several short ones tell more.
 void Survey::put_short_ones_first(std::size_t begin) {
-  constexpr std::array kClasses{500ms, 1000ms, 2000ms, 4000ms};
+  constexpr std::array<Duration, 4> kClasses{500ms, kShort, 2000ms, 4000ms};
   std::vector<std::pair<std::ptrdiff_t, Case>> ranked;
   for (auto i = begin; i < cases_.size(); ++i) {
     const auto place = std::ranges::lower_bound(kClasses, length_of(cases_[i]()));
@@ -73,12 +119,18 @@ void Survey::put_short_ones_first(std::size_t begin) {
   for (auto& [rank, one] : ranked) cases_[begin++] = std::move(one);
 }
 
-void Survey::plan(const Setting& setting, Exercise exercise) {
+/// False: there is nothing of the kind on this link, or that the guard lets pass.
+bool Survey::plan(const Setting& setting, Exercise exercise) {
+  auto one = case_of(setting, exercise);
+  if (one) cases_.push_back(*std::move(one));
+  return one.has_value();
+}
+
+std::optional<Survey::Case> Survey::case_of(const Setting& setting, Exercise exercise) const {
   auto body = (exercises_.*exercise)(setting);
   if (material_.permit) material_.permit(body);
-  if (body.empty()) return;  // nothing of the kind on this link, or that the guard lets pass
-  cases_.emplace_back(
-      [this, &setting, exercise] { return whole(setting, (exercises_.*exercise)(setting)); });
+  if (body.empty()) return std::nullopt;
+  return [this, &setting, exercise] { return whole(setting, (exercises_.*exercise)(setting)); };
 }
 
 /// `of_field` of a field of each kind, then of another of each. Those that change nothing are for
@@ -123,12 +175,14 @@ bool Survey::matters(const Setting& setting, const Field& field) {
 }
 
 Script Survey::whole(const Setting& setting, const Script& body) const {
-  auto script = joined(setting.before, body, kStep);
+  auto script = joined(setting.before, body, setting.rest);
+  const bool is_led_there = setting.rest > kStep;
+  const auto longest =
+      material_.longest + (is_led_there ? length_of(setting.before) + setting.rest : Duration{});
   if (!body.empty()) repertoire_.look_at_all(script, body.back().id);
   if (material_.kind == LinkKind::kSession) script = spaced(std::move(script), {.least = kTick});
   script = spaced(std::move(script), material_.spacing);
-  std::erase_if(script,
-                [&](const KeptRecord& one) { return one.time > Instant{material_.longest}; });
+  std::erase_if(script, [&](const KeptRecord& one) { return one.time > Instant{longest}; });
   if (material_.permit) material_.permit(script);
   return script;
 }

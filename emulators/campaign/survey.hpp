@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -35,14 +36,19 @@ class Survey {
 
   void plan();
   void put_short_ones_first(std::size_t begin);
-  void plan(const Setting& setting, Exercise exercise);
+  bool plan(const Setting& setting, Exercise exercise);
+  /// None: there is nothing of the kind on this link, or that the guard lets pass.
+  [[nodiscard]] std::optional<Case> case_of(const Setting& setting, Exercise exercise) const;
   [[nodiscard]] std::vector<Case> plan_values(std::size_t state, OfField of_field);
+  [[nodiscard]] std::vector<Case> tour_cases();
+  void put_after_short_ones(std::vector<Case> cases, std::size_t begin);
   [[nodiscard]] bool matters(const Setting& setting, const Field& field);
   [[nodiscard]] Script whole(const Setting& setting, const Script& body) const;
 
   const Material& material_;
   Repertoire repertoire_;
   Exercises exercises_;
+  std::vector<Setting> seldom_;  ///< of the tour
   /// What `matters` found.
   std::map<std::pair<const Setting*, const Field*>, bool> matter_;
   std::vector<Case> cases_;

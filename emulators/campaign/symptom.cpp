@@ -10,6 +10,7 @@
 #include <iterator>
 #include <memory>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "emulators/campaign/talk.hpp"
@@ -165,19 +166,18 @@ class Judge {
   template <class GoesOn>
   void each_difference(const BothHeard& heard, GoesOn goes_on) const {
     const auto target = messages_of(heard.target.said, judging_.make_dissector);
-    std::optional<RecordedMessages> first;  // whose messages the differences refer to
-    std::vector<Difference> common;
+    std::vector<RecordedMessages> models;
     for (const auto& model : heard.models) {
-      auto said = messages_of(model.said, judging_.make_dissector);
-      auto found = differences(said, target);
-      if (!first) {
-        first = std::move(said);
-        common = std::move(found);
-      } else {
-        std::erase_if(common, [&](Difference& one) { return !is_among(one, found, *first); });
-      }
-      if (common.empty()) return;
+      models.push_back(messages_of(model.said, judging_.make_dissector));
     }
+    if (models.empty()) return;
+    auto common = differences(models.front(), target);
+    for (const auto& model : std::span{models}.subspan(1)) {
+      if (common.empty()) break;
+      const auto found = differences(model, target);
+      std::erase_if(common, [&](Difference& one) { return !is_among(one, found, models.front()); });
+    }
+    std::ranges::move(differences_of_beats(models, target), std::back_inserter(common));
     for (auto& one : common) {
       if (one.is_timing && !(one.is_agreed && heard.models.size() > 1)) continue;
       if (!goes_on(std::move(one))) return;
@@ -191,19 +191,85 @@ class Judge {
     for (auto& difference : diff(model, target, judging_.rules, aligning_)) {
       const bool is_one_sided = difference.change != Change::kChanged;
       if (is_one_sided && difference.time() > end + judging_.horizon) continue;
-      const auto& message = difference.before != nullptr ? *difference.before : *difference.after;
-      auto symptom =
-          excused({.asked = asked_before(script_, difference.time(), judging_.make_dissector),
-                   .answer = name_of(message),
-                   .parts = parts_of(difference),
-                   .expected = {},
-                   .actual = {},
-                   .time = difference.time()});
+      auto symptom = symptom_at(difference);
       if (!symptom) continue;
       const bool is_timing = !is_one_sided && is_only_early_or_late(difference, *symptom, model);
       all.push_back({*std::move(symptom), std::move(difference), is_timing, !is_one_sided});
     }
     return all;
+  }
+
+  /// When something was done or said, but for what rules ignore.
+  [[nodiscard]] std::set<Instant> times_of_news(const std::vector<RecordedMessages>& models,
+                                                const RecordedMessages& target) const {
+    std::set<Instant> times;
+    for (const auto& record : script_) times.insert(record.time);
+    const auto add_all = [&](const RecordedMessages& said) {
+      for (const auto& [lane, messages] : said.lanes()) {
+        for (const auto& one : messages) {
+          if (!judging_.rules.ignores(one.message.name)) times.insert(one.message.time);
+        }
+      }
+    };
+    std::ranges::for_each(models, add_all);
+    add_all(target);
+    return times;
+  }
+
+  /// What rules ignore since only the device knows when it is due. Whenever that is: as long as
+  /// nothing is done or said, it says the same.
+  [[nodiscard]] std::vector<Difference> differences_of_beats(
+      const std::vector<RecordedMessages>& models, const RecordedMessages& target) const {
+    std::vector<Difference> all;
+    if (judging_.rules.ignored_messages.empty()) return all;
+    const ComparisonRules whenever{.time_tolerance = Duration::max() / 2};
+    const auto news = times_of_news(models, target);
+    for (const auto& [lane, messages] : target.lanes()) {
+      for (const auto& beat : messages) {
+        if (!judging_.rules.ignores(beat.message.name)) continue;
+        const auto* const expected = beat_agreed_on(models, lane, beat, news);
+        if (expected == nullptr || expected->message.raw == beat.message.raw) continue;
+        RecordingDifference difference{Change::kChanged, lane, expected, &beat};
+        difference.what = Likeness{whenever}.differences(*expected, beat);
+        auto symptom = symptom_at(difference);
+        if (symptom) all.push_back({*std::move(symptom), std::move(difference), false, true});
+      }
+    }
+    return all;
+  }
+
+  /// What all models say there, if nothing happens between that and `beat`; nullptr: they do not.
+  [[nodiscard]] const RecordedMessage* beat_agreed_on(const std::vector<RecordedMessages>& models,
+                                                      const std::string& lane,
+                                                      const RecordedMessage& beat,
+                                                      const std::set<Instant>& news) const {
+    const RecordedMessage* agreed = nullptr;
+    for (const auto& model : models) {
+      const auto said = model.lanes().find(lane);
+      if (said == model.lanes().end()) return nullptr;
+      const auto speaks_for_it = [&](const RecordedMessage& one) {
+        if (one.message.name != beat.message.name) return false;
+        const auto [begin, end] = std::minmax(one.message.time, beat.message.time);
+        const auto next = news.lower_bound(begin - judging_.rules.time_tolerance);
+        return next == news.end() || *next > end + judging_.rules.time_tolerance;
+      };
+      const auto found = std::ranges::find_if(said->second, speaks_for_it);
+      if (found == said->second.end()) return nullptr;
+      if (agreed != nullptr && agreed->message.raw != found->message.raw) return nullptr;
+      if (agreed == nullptr) agreed = &*found;
+    }
+    return agreed;
+  }
+
+  /// None: it is excused.
+  [[nodiscard]] std::optional<Symptom> symptom_at(const RecordingDifference& difference) const {
+    const auto& message = difference.before != nullptr ? *difference.before : *difference.after;
+    return excused({.asked = asked_before(script_, difference.time(), judging_.make_dissector),
+                    .answer = name_of(message),
+                    .parts = parts_of(difference),
+                    .expected = {},
+                    .actual = {},
+                    .time = difference.time()});
   }
 
   /// Whether another model differs there, too: from the same message of the target, or by one of

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cstdlib>
+#include <map>
 #include <string_view>
 
 namespace armjig::campaign {
@@ -69,6 +70,18 @@ RecordedMessages messages_of(const std::vector<KeptRecord>& said, MakeDissector 
   }
   messages.finish();
   return messages;
+}
+
+std::uint64_t state_told(const RecordedMessages& messages, Instant begin) {
+  std::map<std::string_view, std::uint64_t> last;
+  for (const auto& [lane, said] : messages.lanes()) {
+    for (const auto& one : said) {
+      if (one.message.time >= begin) last[one.message.name] = state_in(one);
+    }
+  }
+  Hash hash;
+  for (const auto& [name, state] : last) hash.add(state);
+  return hash.value();
 }
 
 bool Shown::add(const RecordedMessages& messages) {

@@ -14,6 +14,9 @@ namespace armjig::campaign {
 [[nodiscard]] RecordedMessages messages_of(const std::vector<KeptRecord>& said,
                                            MakeDissector make_dissector);
 
+/// The state of a device as its messages told it last, of those since `begin`.
+[[nodiscard]] std::uint64_t state_told(const RecordedMessages& messages, Instant begin);
+
 /// What a device has shown so far: its states, as far as its messages tell them, which follows on
 /// which, and how its answers differ. It stands in for the coverage of code that nobody has.
 class Shown {

@@ -12,12 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/device.hpp"
-#include "cli/devices/devices.hpp"
-#include "cli/diff.hpp"
-#include "cli/fuzz_material.hpp"
 #include "harness/rig/judge.hpp"
 #include "harness/wire/parol6/frame.hpp"
+#include "tests/unit/emulators/campaign/live_material.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -29,7 +26,7 @@ using Lines = std::vector<std::string>;
 class Tried {
  public:
   Tried(const std::string& name, const std::string& place)
-      : material_{material_at(name, place)},
+      : material_{live_material(name, place)},
         repertoire_{material_, 1},
         exercises_{material_, repertoire_} {}
 
@@ -45,18 +42,6 @@ class Tried {
   [[nodiscard]] const Exercises& exercises() const { return exercises_; }
 
  private:
-  static Material material_at(const std::string& name, const std::string& place) {
-    const auto& device = **cli::find_device(cli::shipped_devices(), name);
-    RigOptions live;
-    live.target = parse_target(place).value();
-    live.permissions = Permissions::all();
-    RigOptions model;
-    model.target = parse_target("emulated:?profile=firmware").value();
-    auto material = cli::material_of(device, live, model, 8s).value();
-    material.rules = cli::rules_beside(device, live.target, "").value();
-    return material;
-  }
-
   Material material_;
   Repertoire repertoire_;
   Exercises exercises_;
@@ -156,6 +141,28 @@ TEST(Exercises, WriteLinesThatAreTooLongAndNearlyRight) {
   std::string ends;
   for (int i = 0; i < 12; ++i) ends += "\r\n";
   EXPECT_TRUE(has(lines_in(server().exercises().after_runs(setting)), ends));
+}
+
+TEST(Exercises, WriteOddNumbersSoFarApartThatEachAnswerIsKnown) {
+  const auto script = server().exercises().odd_numbers(server().setting("MoveJoystick"));
+  const auto lines = lines_in(script);
+  for (const auto* const odd : {"08", "-0", "000000000000000000000001", " "}) {
+    EXPECT_TRUE(std::ranges::any_of(lines, [&](const std::string& line) {
+      return line.starts_with(std::string{"MoveJoystick:"} + odd + ":");
+    })) << odd;
+  }
+  for (std::size_t i = 1; i < script.size(); ++i) {
+    EXPECT_GT(script[i].time - script[i - 1].time, 100ms);  // what live rules let pass
+  }
+}
+
+TEST(Exercises, WriteLinesOfAllFormsInOnePiece) {
+  const auto lines = lines_in(server().exercises().in_one_segment(server().setting("EStop")));
+  for (const auto* const piece :
+       {"EStop\r\nEStop\nEStop\r\nEStop\r\n", "EStop\nEStop\r\nEStop\r\nEStop\r\n",
+        "estop\r\nESTOP\r\nEStop\r\nEStop\r\n", "\r\nEStop \r\nEStop\r\nEStop\r\n"}) {
+    EXPECT_TRUE(has(lines, piece)) << piece;
+  }
 }
 
 TEST(Exercises, LeaveInTheMiddleOfALine) {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstddef>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/device.hpp"
 #include "cli/devices/devices.hpp"
@@ -104,6 +107,58 @@ Heard many(int begin, int end) {
 TEST(Symptom, IsOneMessageLessOfManyThatAreAlikeWhicheverItIs) {
   EXPECT_TRUE(judge({many(1, 40), {many(0, 40), many(1, 41)}}));
   EXPECT_FALSE(judge({many(1, 40), {many(0, 40), many(1, 40)}}));
+}
+
+struct Beat {
+  Duration time;
+  std::string line;
+};
+
+/// What a server says by itself.
+Heard server(const std::vector<Beat>& beats) {
+  Heard heard;
+  for (const auto& [time, line] : beats) {
+    const auto bytes = std::as_bytes(std::span{line});
+    heard.said.push_back({.time = Instant{time},
+                          .kind = LinkKind::kSession,
+                          .direction = Direction::kFromDevice,
+                          .bytes = {bytes.begin(), bytes.end()}});
+  }
+  return heard;
+}
+
+/// Of a server whose beats nobody can tell the moment of; what is done is done at 2 s.
+std::optional<Symptom> judge_beats(const std::vector<Beat>& target) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  Judging judging{.make_dissector = device.make_dissector, .rules = {}, .horizon = 20ms};
+  judging.rules.time_tolerance = 100ms;
+  judging.rules.is_order_free = true;
+  judging.rules.ignored_messages = {"Heartbeat"};
+  const Script script{{.time = Instant{2s}, .kind = LinkKind::kSession, .bytes = {std::byte{'x'}}}};
+  const auto model = server({{500ms, "Heartbeat:1\r\n"},
+                             {1500ms, "Heartbeat:1\r\n"},
+                             {2500ms, "Heartbeat:3\r\n"},
+                             {3500ms, "Heartbeat:3\r\n"}});
+  return symptom_of(script, {server(target), {model, model}}, judging, {});
+}
+
+TEST(Symptom, IsABeatOfAnotherStateWhereNothingHappens) {
+  const auto symptom = judge_beats({{700ms, "Heartbeat:1\r\n"}, {3000ms, "Heartbeat:1\r\n"}});
+  ASSERT_TRUE(symptom);
+  EXPECT_EQ(symptom->answer, "Heartbeat");
+  EXPECT_EQ(symptom->parts, std::vector<std::string>{"state"});
+  EXPECT_EQ(symptom->time, Instant{2500ms});
+}
+
+TEST(Symptom, IsNoneWhereABeatComesAtAnotherMoment) {
+  EXPECT_FALSE(judge_beats({{100ms, "Heartbeat:1\r\n"},
+                            {1100ms, "Heartbeat:1\r\n"},
+                            {2300ms, "Heartbeat:3\r\n"},
+                            {3900ms, "Heartbeat:3\r\n"}}));
+}
+
+TEST(Symptom, IsNoneWhereABeatMayBeOfBeforeOrOfAfter) {
+  EXPECT_FALSE(judge_beats({{1950ms, "Heartbeat:3\r\n"}, {2050ms, "Heartbeat:1\r\n"}}));
 }
 
 }  // namespace
