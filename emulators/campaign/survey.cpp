@@ -122,8 +122,9 @@ void Survey::put_short_ones_first(std::size_t begin) {
 /// False: there is nothing of the kind on this link, or that the guard lets pass.
 bool Survey::plan(const Setting& setting, Exercise exercise) {
   auto one = case_of(setting, exercise);
-  if (one) cases_.push_back(*std::move(one));
-  return one.has_value();
+  if (!one) return false;
+  cases_.push_back(*std::move(one));
+  return true;
 }
 
 std::optional<Survey::Case> Survey::case_of(const Setting& setting, Exercise exercise) const {
