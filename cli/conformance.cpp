@@ -187,12 +187,18 @@ void print_skipped(const Report& result) {
   fmt::print("skipped: {}\n", text.substr(2));
 }
 
+/// How many wanted to run at once in the last minute; none: nobody knows.
+std::optional<double> host_load() {
+  std::array<double, 1> load{};
+  if (::getloadavg(load.data(), 1) != 1) return std::nullopt;
+  return load[0];
+}
+
 /// What of this machine bears on moments: how busy it was, and what its clock is kept by.
 void add_machine(Report& result) {
-  std::array<double, 1> load{};
-  if (::getloadavg(load.data(), 1) == 1) {
+  if (const auto load = host_load()) {
     result.facts.emplace_back("host load",
-                              fmt::format("{:.2f} in the last minute, on {} processors", load[0],
+                              fmt::format("{:.2f} in the last minute, on {} processors", *load,
                                           std::thread::hardware_concurrency()));
   }
   timex clock{};
@@ -248,6 +254,7 @@ Exit run(const Device& device, const Suite& suite, ConformanceOptions options) {
   if (is_real) {  // virtual time stands still when we do
     missed.emplace();
     options.run.missed = [&missed] { return missed->total(); };
+    options.run.is_busy = [] { return host_load() > std::thread::hardware_concurrency(); };
   }
   const auto started = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   const auto style = style_of(options.colour, stdout);

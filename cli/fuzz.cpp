@@ -259,6 +259,7 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   auto material = material_of(run.device, how, run.model, length);
   if (!material) return report(material.error());
   material->rules = *rules;
+  if (run.options.length) material->longest_tour = length;
   const auto hand = hand_of(run.options.hands);
   auto stage =
       stage_of(run.device, how, run.device, run.model, hand, kHorizon + 2 * rules->time_tolerance);
@@ -412,7 +413,7 @@ void add_fuzz(CLI::App& app, Devices devices, Action& action) {
       command
           ->add_option("--length", options->length,
                        "the longest case, in the device's time; most have an eighth of that "
-                       "(default: 60 emulated, 6 live)")
+                       "(default: 60 emulated, 8 live)")
           ->type_name("SECONDS")
           ->check(number(0.001, 3600));
   auto* const out = command

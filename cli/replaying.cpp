@@ -44,7 +44,7 @@ std::string needed_for(RecordJudge::MakeJudge make_judge, const std::vector<Kept
 /// As `RigOptions` are given, on any kind of link; what the guard refused has its reason.
 template <class Kind>
 Outcome<Played> play(const Kind& kind, const Device& device, const Session& session,
-                     const RigOptions& rig_options, const PlayHow& how) {
+                     RigOptions rig_options, const PlayHow& how) {
   if (!rig_options.target.is_emulated()) {
     const auto needed = needed_for(kind.make_judge, session.records, rig_options.permissions);
     if (!needed.empty()) {
@@ -52,6 +52,7 @@ Outcome<Played> play(const Kind& kind, const Device& device, const Session& sess
                      fmt::format("nothing was sent: this recording needs --allow {}", needed));
     }
   }
+  rig_options.when_left = WhenLeft::kSayNothing;  // as who was recorded
   auto rig = Rig<typename Kind::Port>::open(wiring_of(device, kind), rig_options);
   if (!rig) return tl::unexpected{rig.error()};
   auto played = play_host(rig->port(), session.records, how);

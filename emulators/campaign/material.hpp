@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -44,7 +45,8 @@ struct Material {
   bool has_operations = true;  ///< of a bus: transactions may have any form
   /// A client that closes is known to have; else only, as over TCP at first, that it says no more.
   bool are_ends_told = true;
-  Duration longest{};  ///< of a script
+  Duration longest{};                                ///< of a script
+  Duration longest_tour = std::chrono::seconds{60};  ///< of one that leads through states
   Spacing spacing{};
   Epilogue epilogue{};  ///< empty: all shows at once
   /// What a sound device that is as new says to a script, without waiting for it; empty: nobody

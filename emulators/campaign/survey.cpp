@@ -75,11 +75,11 @@ void Survey::plan() {
 /// Single messages in each state, then in the middle of what they began; and more of what is
 /// answered otherwise in a state that takes time to come to.
 std::vector<Survey::Case> Survey::tour_cases() {
-  constexpr Duration kLongest = 60s;
   std::vector<Case> cases;
   Tour tour{material_, repertoire_};
   const auto add_parts = [&] {
-    for (auto part = tour.next(kLongest); !part.empty(); part = tour.next(kLongest)) {
+    const auto longest = material_.longest_tour;
+    for (auto part = tour.next(longest); !part.empty(); part = tour.next(longest)) {
       cases.emplace_back([part] { return part; });
     }
   };

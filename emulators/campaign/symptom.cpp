@@ -178,6 +178,7 @@ class Judge {
       std::erase_if(common, [&](Difference& one) { return !is_among(one, found, models.front()); });
     }
     std::ranges::move(differences_of_beats(models, target), std::back_inserter(common));
+    std::ranges::stable_sort(common, {}, [](const auto& one) { return one.symptom.time; });
     for (auto& one : common) {
       if (one.is_timing && !(one.is_agreed && heard.models.size() > 1)) continue;
       if (!goes_on(std::move(one))) return;

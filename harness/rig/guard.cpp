@@ -171,6 +171,7 @@ void Guard::report_change() {
 
 /// Nothing can be reported from here, so errors of the port end it.
 void Guard::stop() {
+  watch_->has_left_moving = false;
   for (int i = 0; i < patience_.stops; ++i) {
     std::vector<std::vector<std::byte>> messages;  // a copy, for judging changes the judge
     for (const auto message : judge_->stop()) messages.emplace_back(message.begin(), message.end());

@@ -14,6 +14,15 @@ namespace armjig {
 
 class Guard;
 
+/// What a guard does when a connection ends while the arm may be moving. Losing a client stops no
+/// server's arm.
+enum class WhenLeft : std::uint8_t {
+  kStop,        ///< before it ends, however it does
+  kSayNothing,  ///< for those who look at what happens then. But a port that goes with its
+                ///< connection stops the arm first, and the last of all does if another left it
+                ///< moving
+};
+
 /// What all guards of a rig have in common. A server has a guard for each connection.
 class GuardState {
  public:
@@ -22,6 +31,8 @@ class GuardState {
   std::size_t refusals = 0;  ///< how many there were
   /// A supervisor has stopped the device or was ended; `last_refusal` said so.
   bool is_unsupervised = false;
+  WhenLeft when_left{};          ///< of a server
+  bool has_left_moving = false;  ///< a client of one, and nothing was stopped since
 
   /// Tells the supervisors of all of them that this program lives.
   void give_sign_of_life();
@@ -97,6 +108,8 @@ class Guard {
   /// After something was sent or observed.
   void look();
   void stop_if_moving();
+  void stop();
+  [[nodiscard]] bool may_be_moving() const { return judge_->may_be_moving(); }
 
   /// What the device sent.
   void hear(Bytes bytes);
@@ -114,7 +127,6 @@ class Guard {
   void refuse(Refusal refusal);
   void report_life();
   void report_change();
-  void stop();
 
   std::unique_ptr<Judge> judge_;
   Permissions granted_;

@@ -16,6 +16,7 @@ constexpr Duration kLongestWait = 200ms;
 /// A server may be busy with the arm until it takes the stop up, and must not be left with its
 /// answer on the way. TCP loses nothing.
 constexpr Duration kServerTakes = 500ms;
+constexpr Duration kServerAccepts = 2s;
 
 /// As a judge wants it.
 std::vector<std::byte> bytes_of(const BusMessage& message, Bytes data) {
@@ -53,11 +54,9 @@ Result<void> GuardedStream::listen(Instant deadline) {
 }
 
 GuardedSession::GuardedSession(std::unique_ptr<SessionPort> port, std::unique_ptr<Judge> judge,
-                               Permissions permissions, std::shared_ptr<GuardState> watch,
-                               WhenLeft when_left)
+                               Permissions permissions, std::shared_ptr<GuardState> watch)
     : SessionAround{std::move(port)},
-      Guard{std::move(judge), permissions, std::move(watch), {1, kServerTakes}},
-      when_left_{when_left} {}
+      Guard{std::move(judge), permissions, std::move(watch), {1, kServerTakes}} {}
 
 GuardedSession::~GuardedSession() {
   leave_for_good(WhenLeft::kStop);
@@ -118,22 +117,24 @@ Result<void> GuardedSession::settle(Instant deadline) {
 }
 
 void GuardedSession::half_close() {
-  leave(when_left_);
+  leave(watch().when_left);
   inner().half_close();
 }
 
 void GuardedSession::close() {
-  leave_for_good(when_left_);
+  leave_for_good(watch().when_left);
   inner().close();
 }
 
 void GuardedSession::reset() {
-  leave_for_good(when_left_);
+  leave_for_good(watch().when_left);
   inner().reset();
 }
 
 void GuardedSession::leave(WhenLeft when_left) {
-  if (is_open_ && when_left == WhenLeft::kStop) stop_if_moving();
+  if (!is_open_) return;
+  if (when_left == WhenLeft::kStop) return stop_if_moving();
+  if (may_be_moving()) watch().has_left_moving = true;
 }
 
 /// The supervisor holds the socket, too, so it goes first.
@@ -188,13 +189,21 @@ void GuardedBus::wait_until(Instant time) {
 
 GuardedSource::GuardedSource(std::unique_ptr<SessionSource> inner,
                              std::unique_ptr<Judge> (*make_judge)(), Permissions permissions,
-                             const std::shared_ptr<GuardState>& watch, WhenLeft when_left)
+                             const std::shared_ptr<GuardState>& watch)
     : SourceAround{std::move(inner),
-                   [make_judge, permissions, watch, when_left](std::unique_ptr<SessionPort> port) {
+                   [make_judge, permissions, watch](std::unique_ptr<SessionPort> port) {
                      return std::make_unique<GuardedSession>(std::move(port), make_judge(),
-                                                             permissions, watch, when_left);
+                                                             permissions, watch);
                    }},
+      make_judge_{make_judge},
       watch_{watch} {}
+
+/// A client of its own stops what another left moving.
+GuardedSource::~GuardedSource() {
+  if (!watch_->has_left_moving) return;
+  GuardedSession last{inner().make_port(), make_judge_(), {}, watch_};
+  if (last.connect(last.now() + kServerAccepts)) last.stop_arm();
+}
 
 void GuardedSource::pause(Duration duration) {
   for (const auto end = now() + duration; now() < end;) {

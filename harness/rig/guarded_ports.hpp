@@ -54,21 +54,12 @@ class GuardedStream final : public StreamAround,
   ByteQueue unread_;
 };
 
-/// What a guard does when a connection ends while the arm may be moving. Losing a client stops no
-/// server's arm.
-enum class WhenLeft : std::uint8_t {
-  kStop,        ///< before it ends, however it does
-  kSayNothing,  ///< for those who look at what happens then; but a port that goes with its
-                ///< connection stops the arm first
-};
-
 /// Each connection has a supervisor of its own.
 class GuardedSession final : public SessionAround, public Guard {
  public:
   GuardedSession(std::unique_ptr<SessionPort> port, std::unique_ptr<Judge> judge,
                  Permissions permissions,
-                 std::shared_ptr<GuardState> watch = std::make_shared<GuardState>(),
-                 WhenLeft when_left = {});
+                 std::shared_ptr<GuardState> watch = std::make_shared<GuardState>());
   ~GuardedSession() override;
 
   /// Errors and threads: as for `Guard::begin`.
@@ -79,6 +70,9 @@ class GuardedSession final : public SessionAround, public Guard {
   void close() override;
   void reset() override;
 
+  /// Whoever moved it.
+  void stop_arm() { stop(); }
+
  private:
   Result<void> put(Bytes message) override { return inner().send(message); }
   Result<void> listen(Instant deadline) override;
@@ -87,7 +81,6 @@ class GuardedSession final : public SessionAround, public Guard {
   void leave(WhenLeft when_left);
   void leave_for_good(WhenLeft when_left);
 
-  WhenLeft when_left_;
   bool is_open_ = false;
   ByteQueue unread_;
   std::optional<Received> unread_end_;
@@ -117,15 +110,17 @@ class GuardedBus final : public TransactionBus,
   std::unique_ptr<BusPort> port_;
 };
 
-/// Every connection to a server guarded. Also while nobody reads, the supervisors hear from us.
+/// Every connection to a server guarded. Also while nobody reads, the supervisors hear from us. It
+/// outlives them.
 class GuardedSource final : public SourceAround {
  public:
   GuardedSource(std::unique_ptr<SessionSource> inner, std::unique_ptr<Judge> (*make_judge)(),
-                Permissions permissions, const std::shared_ptr<GuardState>& watch,
-                WhenLeft when_left);
+                Permissions permissions, const std::shared_ptr<GuardState>& watch);
+  ~GuardedSource() override;
   void pause(Duration duration) override;
 
  private:
+  std::unique_ptr<Judge> (*make_judge_)();
   std::shared_ptr<GuardState> watch_;
 };
 

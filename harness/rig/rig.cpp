@@ -70,7 +70,7 @@ Result<std::unique_ptr<Port>> guard_port(const Wiring<Port>& wiring, std::unique
                                          const std::shared_ptr<GuardState>& watch) {
   if constexpr (std::is_same_v<Port, SessionSource>) {
     return std::make_unique<GuardedSource>(std::move(port), wiring.make_judge, options.permissions,
-                                           watch, options.when_left);
+                                           watch);
   } else {
     return GuardedPort<Port>::guard(std::move(port), wiring.make_judge(), options.permissions,
                                     watch);
@@ -131,6 +131,7 @@ Outcome<Rig<Port>> Rig<Port>::open(const Wiring<Port>& wiring, const RigOptions&
   }
   if (!options.target.is_emulated()) {
     rig.watch_ = std::make_shared<GuardState>();
+    rig.watch_->when_left = options.when_left;
     auto guarded = guard_port(wiring, std::move(rig.port_), options, rig.watch_);
     if (!guarded) return problem_of_guard(options.target, guarded.error());
     rig.port_ = *std::move(guarded);

@@ -349,6 +349,22 @@ TEST(ConformanceRun, AccusesADeviceThatIsLateWhereAnEmulatedOneIsNot) {
   EXPECT_THAT(verdicts(run_prompt(bench, beside(0))), ElementsAre("n.prompt fail"));
 }
 
+TEST(ConformanceRun, WantsAMomentMissedAgainAndAgainOnABusyMachine) {
+  const auto late_for = [](int times) {
+    NumberBench bench;
+    bench.late_answers = times;
+    auto options = beside(0);
+    options.is_busy = [] { return true; };
+    return run_prompt(bench, options).rows.front();
+  };
+  for (const int times : {2, 3, 4}) {
+    const auto row = late_for(times);
+    EXPECT_EQ(row.verdict, Verdict::kInconclusive) << times;
+    EXPECT_THAT(row.actual, HasSubstr(std::to_string(times) + " times expected 0 to 500 ms"));
+  }
+  EXPECT_EQ(late_for(5).verdict, Verdict::kFail);
+}
+
 TEST(ConformanceRun, LeavesOpenWhatAnEmulatedDeviceOnSuchALinkMissesAsWell) {
   NumberBench bench;
   bench.late_answers = 2;

@@ -93,9 +93,10 @@ TEST_F(SessionGuard, StopsAMovingArmWhenItRefusesSomething) {
 }
 
 TEST_F(SessionGuard, SaysNothingAtAnEndThatSomebodyLooksAtUnlessItGoesItself) {
+  const auto state = std::make_shared<GuardState>();
+  state->when_left = WhenLeft::kSayNothing;
   port = std::make_unique<GuardedSession>(std::make_unique<Recorder>(notes),
-                                          kinovazed::rig::make_judge(), Permissions::all(),
-                                          std::make_shared<GuardState>(), WhenLeft::kSayNothing);
+                                          kinovazed::rig::make_judge(), Permissions::all(), state);
   ASSERT_TRUE(port->connect({}));
   EXPECT_TRUE(send("Retract\r\n"));
   port->close();
@@ -104,6 +105,57 @@ TEST_F(SessionGuard, SaysNothingAtAnEndThatSomebodyLooksAtUnlessItGoesItself) {
   ASSERT_TRUE(port->connect({}));
   port.reset();
   EXPECT_THAT(notes, ElementsAre("connect", ";EStop;", "close"));
+}
+
+/// Ports that note what they do, all in one list.
+class Server final : public SessionSource {
+ public:
+  explicit Server(std::vector<std::string>& notes) : notes_{notes} {}
+  std::unique_ptr<SessionPort> make_port() override { return std::make_unique<Recorder>(notes_); }
+  void pause(Duration /*duration*/) override {}
+  [[nodiscard]] Instant now() const override { return {}; }
+
+ private:
+  std::vector<std::string>& notes_;
+};
+
+class SourceGuard : public ::testing::Test {
+ protected:
+  SourceGuard() { state->when_left = WhenLeft::kSayNothing; }
+  void open_source() {
+    source = std::make_unique<GuardedSource>(std::make_unique<Server>(notes),
+                                             kinovazed::rig::make_judge, Permissions::all(), state);
+    port = source->make_port();
+    ASSERT_TRUE(port->connect({}));
+  }
+  Result<void> send(std::string_view text) { return port->send(std::as_bytes(std::span{text})); }
+
+  std::vector<std::string> notes;
+  std::shared_ptr<GuardState> state = std::make_shared<GuardState>();
+  std::unique_ptr<GuardedSource> source;
+  std::unique_ptr<SessionPort> port;
+};
+
+TEST_F(SourceGuard, StopsAtItsEndWhatAClientLeftMoving) {
+  open_source();
+  EXPECT_TRUE(send("Retract\r\n"));
+  port->close();
+  port = source->make_port();
+  ASSERT_TRUE(port->connect({}));
+  port->close();
+  notes.clear();
+  source.reset();
+  EXPECT_THAT(notes, ElementsAre("connect", ";EStop;", "close"));
+}
+
+TEST_F(SourceGuard, SaysNothingAtItsEndIfNothingWasLeftMoving) {
+  open_source();
+  EXPECT_TRUE(send("Retract\r\n"));
+  port.reset();
+  EXPECT_EQ(notes.back(), "close");
+  notes.clear();
+  source.reset();
+  EXPECT_THAT(notes, ElementsAre());
 }
 
 TEST_F(SessionGuard, LetsAConnectionEndThatMovedNothing) {

@@ -199,9 +199,10 @@ TEST(HostRole, LeavesAConnectionThatANewOneReplacesAsItsGuardIsTold) {
                          .details = R"("dir":"connect","conn":1,"text":"ok")"};
   const std::vector<KeptRecord> records{said(10ms, "Retract\r\n"), again,
                                         said(150ms, "GetAbsolutePosition\r\n")};
+  const auto state = std::make_shared<GuardState>();
+  state->when_left = WhenLeft::kSayNothing;
   GuardedSource server{open_in_memory(make_hosted(*kinovazed::emulation::make({}, "test"))),
-                       kinovazed::rig::make_judge, Permissions::all(),
-                       std::make_shared<GuardState>(), WhenLeft::kSayNothing};
+                       kinovazed::rig::make_judge, Permissions::all(), state};
   const auto played = play_host(server, records, {});
   ASSERT_TRUE(played);
   ASSERT_EQ(played->passed.size(), records.size());
