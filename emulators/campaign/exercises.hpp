@@ -42,6 +42,9 @@ class Exercises {
   /// All that can be chosen, with other numbers each time: each byte has had each value then, each
   /// field each edge.
   [[nodiscard]] Script all_fields(const Setting& setting) const;
+  /// Each of its fields that is a code or has bits at each value that means something, some times
+  /// on end, with other numbers in the others.
+  [[nodiscard]] Script held_codes(const Setting& setting) const;
   /// Each kind of message after it, when its fields were as large as can be, and when it was
   /// refused.
   [[nodiscard]] Script mixed_pairs(const Setting& setting) const;
@@ -49,6 +52,8 @@ class Exercises {
   [[nodiscard]] Script variants(const Setting& setting) const;
   /// Its floats at many small values, with time for a tick after each.
   [[nodiscard]] Script sweep(const Setting& setting) const;
+  /// With each other number in place of that of the bytes which follow, and as many bytes.
+  [[nodiscard]] Script false_lengths(const Setting& setting) const;
   /// The bytes that begin or end messages, at each place in it.
   [[nodiscard]] Script marked(const Setting& setting) const;
   /// On a bus: what was chosen once is read again and again, also as it changes.
@@ -62,11 +67,19 @@ class Exercises {
   /// The same, some at a time in one piece.
   [[nodiscard]] Script bursts(const Setting& setting) const;
 
+  /// Each sequence of three kinds, the most frequent first, and each of two in one piece, and then
+  /// for a while what moves most: it tells what the device has become, which its answers may not.
+  [[nodiscard]] std::vector<Script> told_sequences() const;
+
   // Of lines.
   /// Each of its bytes wrong, or missing.
   [[nodiscard]] Script misspelt(const Setting& setting) const;
   /// Several in one piece, of which two are odd: by their ends, their case, or as nothing.
   [[nodiscard]] Script in_one_segment(const Setting& setting) const;
+  /// Each kind of line with each kind of blank at each place where a piece of it begins or ends.
+  [[nodiscard]] Script blanks(const Setting& setting) const;
+  /// Twice, in two segments of each size.
+  [[nodiscard]] Script cut_across(const Setting& setting) const;
   /// By a client that leaves in the middle of it, before it comes from another one.
   [[nodiscard]] Script half_lines(const Setting& setting) const;
   /// As long as lines of each length, by what means nothing.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exercises with several messages: in each order, and in one piece.
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <utility>
 
@@ -31,6 +32,14 @@ std::vector<std::size_t> all_sequences(std::size_t symbols) {
   };
   extend(1, 1);
   return all;
+}
+
+/// Whether somebody wrote down what its code means.
+bool is_named(const Message& message) {
+  const auto* const code = code_in(message);
+  if (code == nullptr || code->values.empty()) return true;
+  return std::ranges::find(code->values, field_value(*code, message.raw), &NamedValue::value) !=
+         code->values.end();
 }
 
 }  // namespace
@@ -67,6 +76,40 @@ Script Exercises::sequences(const Setting& setting) const {
     look(body, number++);
   }
   return body;
+}
+
+std::vector<Script> Exercises::told_sequences() const {
+  std::vector<Script> all;
+  const auto& mover = repertoire_.mover();
+  if (material_.kind != LinkKind::kStream || !mover) return all;
+  std::vector<const Script*> symbols;
+  for (const auto& kind : repertoire_.kinds()) {
+    const auto& exchange = kind.front().exchange;
+    if (is_named(kind.front().message) && !strays(exchange) && is_permitted(material_, exchange)) {
+      symbols.push_back(&exchange);
+    }
+  }
+  for (std::size_t most = 0; most < symbols.size(); ++most) {
+    for (std::size_t number = 0; number < (most + 1) * (most + 1) * (most + 1); ++number) {
+      const std::array three{number / (most + 1) / (most + 1), number / (most + 1) % (most + 1),
+                             number % (most + 1)};
+      if (std::ranges::max(three) != most) continue;
+      auto& one = all.emplace_back();
+      for (const auto symbol : three) add_apart(one, *symbols[symbol]);
+      add_watched(one, mover->exchange);
+    }
+  }
+  for (const auto* const first : symbols) {
+    for (const auto* const second : symbols) {
+      if (first == second) continue;
+      auto& one = all.emplace_back(mover->before);
+      for (int i = 0; i < 2; ++i) {
+        add_apart(one, {in_one_piece(first->front(), second->front())});
+      }
+      add_watched(one, mover->exchange);
+    }
+  }
+  return all;
 }
 
 Script Exercises::bursts(const Setting& setting) const {

@@ -42,6 +42,15 @@ std::int64_t extreme_of(const Field& field, std::size_t time) {
 
 std::int64_t all_bits(const Field& /*field*/) { return -1; }
 
+/// The values of a code, or each bit and all of them; none if it is neither.
+std::vector<std::int64_t> meant_by(const Field& field) {
+  std::vector<std::int64_t> values;
+  for (const auto& one : field.values) values.push_back(one.value);
+  for (std::size_t bit = 0; bit < field.bits.size(); ++bit) values.push_back(1LL << bit);
+  if (!field.bits.empty()) values.push_back(255);
+  return values;
+}
+
 std::vector<Field> floats_of(std::vector<Field> fields) {
   std::erase_if(fields,
                 [](const Field& field) { return field.encoding != Encoding::kFloatLittle; });
@@ -71,7 +80,8 @@ std::vector<Field> Exercises::free_fields(const Setting& setting) const {
 
 Script Exercises::with_all(const Setting& setting, const std::vector<Field>& fields,
                            const NumberOf& number_of) const {
-  for (const auto smaller : {0, 8, 16}) {
+  constexpr int kLeast = 16;
+  for (int smaller = 0; smaller <= kLeast; ++smaller) {
     auto raw = setting.message.raw;
     auto pieces = setting.exchange;
     for (const auto& field : fields) {
@@ -113,6 +123,46 @@ Script Exercises::all_fields(const Setting& setting) const {
   });
   if (fields.front().place == Place::kBytes) try_all(kBytes, bytes_at);
   if (material_.kind != LinkKind::kBus) try_all(kEdgeCount, edge_of);
+  return body;
+}
+
+Script Exercises::held_codes(const Setting& setting) const {
+  constexpr std::size_t kTimes = 8;
+  Script body;
+  const auto fields = free_fields(setting);
+  std::size_t time = 0;
+  for (const auto& held : fields) {
+    if (held.place != Place::kBytes) continue;
+    for (const auto value : meant_by(held)) {
+      for (std::size_t i = 0; i < kTimes; ++i, ++time) {
+        const auto number = [&](const Field& field) {
+          return field.offset == held.offset ? value : bytes_at(field, time);
+        };
+        add_told(body, setting, with_all(setting, fields, number));
+      }
+    }
+  }
+  return body;
+}
+
+/// On a stream; the message itself as often as bytes are waited for then.
+Script Exercises::false_lengths(const Setting& setting) const {
+  Script body;
+  const auto& raw = setting.message.raw;
+  const auto length = std::ranges::find_if(setting.message.fields, [&](const Field& field) {
+    return field.place == Place::kBytes && field.width == 1 &&
+           field_value(field, raw) == static_cast<std::int64_t>(raw.size()) - field.offset - 1;
+  });
+  if (material_.kind != LinkKind::kStream || length == setting.message.fields.end()) return body;
+  for (int number = 0; number < 256; ++number) {
+    auto other = raw;
+    set_field_value(*length, other, number);
+    add(body, sending(setting.exchange.front(), std::move(other)));
+    for (std::size_t sent = 0; sent < raw.size() + static_cast<std::size_t>(number);
+         sent += raw.size()) {
+      add(body, setting.exchange);
+    }
+  }
   return body;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exercises with lines: what of a line may be longer than it has to be, and what is no line.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string_view>
 
@@ -95,6 +96,39 @@ Script Exercises::in_one_segment(const Setting& setting) const {
       }
       add(body, sending(setting.exchange, std::move(piece)));
     }
+  }
+  return body;
+}
+
+Script Exercises::blanks(const Setting& setting) const {
+  constexpr std::array kBlanks{std::byte{' '}, std::byte{'\t'}, std::byte{'\v'}, std::byte{'\f'}};
+  constexpr std::byte kBetween{':'};
+  Script body;
+  if (material_.kind != LinkKind::kSession) return body;
+  for (const auto& kind : repertoire_.kinds()) {
+    const auto& line = kind.front().exchange.front().bytes;
+    const auto end = line.size() - size_of_end(line);
+    for (std::size_t place = 0; place <= end; ++place) {
+      const bool is_border =
+          place == 0 || place == end || line[place] == kBetween || line[place - 1] == kBetween;
+      if (!is_border) continue;
+      for (const auto blank : kBlanks) {
+        add(body, sending(setting.exchange.front(), with_inserted(line, place, {blank})));
+      }
+    }
+  }
+  return body;
+}
+
+Script Exercises::cut_across(const Setting& setting) const {
+  Script body;
+  if (material_.kind != LinkKind::kSession) return body;
+  const auto& line = setting.exchange.front().bytes;
+  const auto twice = with_inserted(line, line.size(), line);
+  for (std::size_t size = 1; size < twice.size(); ++size) {
+    const auto border = twice.begin() + static_cast<std::ptrdiff_t>(size);
+    add(body, sending(setting.exchange.front(), {twice.begin(), border}));
+    add(body, sending(setting.exchange.front(), {border, twice.end()}));
   }
   return body;
 }

@@ -87,6 +87,20 @@ Repertoire::Repertoire(const Material& material, std::uint64_t seed)
       for (const auto& [size, exchange] : kind->of_size) setting.variants.push_back(exchange);
     }
   }
+  if (material_.kind == LinkKind::kStream && is_rehearsed()) find_mover();
+}
+
+void Repertoire::find_mover() {
+  std::size_t most = 0;
+  for (const auto& kind : kinds_) {
+    const auto& exchange = kind.front().exchange;
+    const bool strays = material_.strays != nullptr && material_.strays(exchange.front().bytes);
+    if (strays || !is_permitted(material_, exchange)) continue;
+    auto led = led_to(kind.front());
+    const auto effect = effect_of(led);
+    if (effect > most) mover_ = std::move(led);
+    most = std::max(most, effect);
+  }
 }
 
 /// Where some may be sent by themselves, only those.

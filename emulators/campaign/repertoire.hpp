@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ class Repertoire {
   /// On a bus: after it, what is read goes on changing; empty: after nothing.
   [[nodiscard]] const Script& motion() const noexcept { return motion_; }
 
+  /// The message by which most moves, of those whose course does not depend on more than answers
+  /// tell, after what makes it move; none: there is none.
+  [[nodiscard]] const std::optional<Setting>& mover() const noexcept { return mover_; }
+
   /// Asks the device there all that can be asked.
   void look_at_all(Script& body, std::uint32_t address, Duration pause = kStep) const;
 
@@ -66,6 +71,7 @@ class Repertoire {
   void keep_permitted(std::vector<Setting>& settings) const;
   void find_looks(const std::map<std::string, Kind>& found);
   [[nodiscard]] bool is_look(const Script& exchange, const std::vector<Script>& others) const;
+  void find_mover();
   void find_motion(const std::vector<Kind*>& kinds);
   [[nodiscard]] std::vector<Script> variants_of(const std::vector<Setting>& settings) const;
 
@@ -82,6 +88,7 @@ class Repertoire {
   std::vector<std::vector<Setting>> kinds_;
   std::vector<Script> looks_;
   Script motion_;
+  std::optional<Setting> mover_;
 };
 
 /// The exchange with that number in the fields.

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <initializer_list>
 #include <iterator>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "emulators/campaign/tour.hpp"
@@ -19,6 +21,17 @@ using namespace std::chrono_literals;
 /// meanwhile may or may not have its answers.
 constexpr Duration kTick = 12ms;
 constexpr Duration kShort = 1000ms;
+
+/// As opposed to one whose name is that of another before it but for a number.
+bool is_first_of_its_kind(std::span<const Field> fields, std::size_t number) {
+  const auto without_number = [](std::string_view name) {
+    return name.substr(0, name.find_last_not_of("0123456789") + 1);
+  };
+  return std::none_of(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(number),
+                      [&](const Field& before) {
+                        return without_number(before.name) == without_number(fields[number].name);
+                      });
+}
 
 }  // namespace
 
@@ -48,12 +61,19 @@ void Survey::plan() {
   of_first({&Exercises::sequences, &Exercises::bursts, &Exercises::after_runs, &Exercises::padded,
             &Exercises::odd_ends, &Exercises::marked, &Exercises::in_one_segment});
   of_one(&Exercises::odd_numbers);
+  of_first({&Exercises::blanks, &Exercises::cut_across, &Exercises::half_lines});
   of_all(0,
          {&Exercises::all_fields, &Exercises::variants, &Exercises::reads_again, &Exercises::sums});
+  of_one(&Exercises::held_codes);
+  of_one(&Exercises::false_lengths);
+  if (!repertoire_.kinds().empty()) {
+    plan_all(repertoire_.kinds().front().front(), exercises_.told_sequences());
+  }
+  of_all(0, {&Exercises::watched_pairs});
   const auto many_at_once = cases_.size();
-  of_all(0, {&Exercises::watched_lengths, &Exercises::watched_pairs, &Exercises::pairs,
-             &Exercises::half_lines, &Exercises::misspelt, &Exercises::mixed_pairs,
-             &Exercises::cut_copies, &Exercises::sweep});
+  of_all(0, {&Exercises::watched_lengths, &Exercises::pairs, &Exercises::half_lines,
+             &Exercises::misspelt, &Exercises::mixed_pairs, &Exercises::cut_copies,
+             &Exercises::sweep});
   const auto idle_ones = plan_values(0, &Exercises::values);
   of_all(0, {&Exercises::lengths, &Exercises::odd_bytes});
   for (const auto& one : repertoire_.looks()) {
@@ -85,18 +105,30 @@ std::vector<Survey::Case> Survey::tour_cases() {
   };
   add_parts();
   seldom_ = tour.where_seldom_answered();
-  const auto of_seldom = [&](Exercise exercise, auto place) {
-    for (const auto& setting : seldom_) {
-      if (auto one = case_of(setting, exercise)) place = cases.insert(place, *std::move(one)) + 1;
-    }
-  };
-  of_seldom(&Exercises::odd_numbers, cases.begin());
   tour.go_deeper();
   add_parts();
-  for (const auto exercise : {&Exercises::some_copies, &Exercises::pairs, &Exercises::all_fields}) {
-    of_seldom(exercise, cases.end());
+  for (const auto exercise : {&Exercises::odd_numbers, &Exercises::some_copies, &Exercises::pairs,
+                              &Exercises::all_fields}) {
+    for (const auto& setting : seldom_) {
+      if (auto one = case_of(setting, exercise)) cases.push_back(*std::move(one));
+    }
   }
   return cases;
+}
+
+/// As many of them in each case as it has time for.
+void Survey::plan_all(const Setting& setting, const std::vector<Script>& bodies) {
+  Script part;
+  const auto add_part = [&] {
+    if (!part.empty()) cases_.emplace_back([this, &setting, part] { return whole(setting, part); });
+    part.clear();
+  };
+  for (const auto& body : bodies) {
+    const auto length = length_of(setting.before) + length_of(part) + length_of(body) + 4 * kStep;
+    if (length > material_.longest) add_part();
+    part = part.empty() ? body : joined(part, body, kStep);
+  }
+  add_part();
 }
 
 /// What takes long and is found by nothing else.
@@ -135,7 +167,7 @@ std::optional<Survey::Case> Survey::case_of(const Setting& setting, Exercise exe
 }
 
 /// `of_field` of a field of each kind, then of another of each. Those that change nothing are for
-/// later.
+/// later, and so are further ones of a row, as `speed.j2`.
 std::vector<Survey::Case> Survey::plan_values(std::size_t state, OfField of_field) {
   std::vector<Case> idle_ones;
   bool is_one_left = true;
@@ -151,7 +183,8 @@ std::vector<Survey::Case> Survey::plan_values(std::size_t state, OfField of_fiel
       auto body = (exercises_.*of_field)(setting, field);
       if (material_.permit) material_.permit(body);
       if (body.empty()) continue;
-      auto& cases = matters(setting, field) ? cases_ : idle_ones;
+      const bool is_first = is_first_of_its_kind(setting.message.fields, number);
+      auto& cases = is_first && matters(setting, field) ? cases_ : idle_ones;
       cases.emplace_back([this, &setting, &field, of_field] {
         return whole(setting, (exercises_.*of_field)(setting, field));
       });

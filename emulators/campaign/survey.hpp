@@ -35,6 +35,7 @@ class Survey {
   using Case = std::function<Script()>;
 
   void plan();
+  void plan_all(const Setting& setting, const std::vector<Script>& bodies);
   void put_short_ones_first(std::size_t begin);
   bool plan(const Setting& setting, Exercise exercise);
   /// None: there is nothing of the kind on this link, or that the guard lets pass.

@@ -128,6 +128,71 @@ TEST(Exercises, SendAllOrdersOfThreeApartAndTogether) {
   }
 }
 
+/// What a board has become, its answers do not tell: a jog does.
+TEST(Exercises, JogAfterEachOrderOfThreeForLongerThanAnswersMayBeLate) {
+  const std::vector order{parol6::Command::kDisable, parol6::Command::kDisable,
+                          parol6::Command::kClearError};
+  const auto is_told = [&](const Script& one) {
+    std::vector<std::byte> codes;
+    for (const auto& record : one) codes.push_back(code_bytes_of(record).front());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (codes.at(i) != std::byte{static_cast<std::uint8_t>(order[i])}) return false;
+    }
+    EXPECT_EQ(codes.back(), std::byte{static_cast<std::uint8_t>(parol6::Command::kJog)});
+    EXPECT_GT(one.back().time - one.at(order.size()).time, 180ms);
+    return true;
+  };
+  EXPECT_EQ(std::ranges::count_if(board().exercises().told_sequences(), is_told), 1);
+}
+
+TEST(Exercises, HoldEachModeOfTheGripperWithOtherNumbersEachTime) {
+  constexpr std::size_t kMode = 51;
+  constexpr std::size_t kSpeed = 47;
+  std::size_t on_end = 0;
+  std::byte last{};
+  const auto script = board().exercises().held_codes(board().setting("command idle"));
+  for (std::size_t i = 1; i < script.size(); ++i) {
+    const auto& bytes = script[i].bytes;
+    const bool is_clear = bytes.at(kMode) == std::byte{parol6::gripper_mode::kClearError} &&
+                          script[i - 1].bytes.at(kMode) == bytes.at(kMode);
+    if (is_clear && bytes.at(kSpeed) != last) ++on_end;
+    last = bytes.at(kSpeed);
+  }
+  EXPECT_GE(on_end, 6U);
+}
+
+TEST(Exercises, GiveEachLengthAndAsManyBytes) {
+  constexpr std::size_t kLength = 3;
+  std::array<std::size_t, 256> after{};  // each of them, but for those next to the true one
+  std::size_t number = 0;
+  for (const auto& record : board().exercises().false_lengths(board().setting("command idle"))) {
+    const auto length = std::to_integer<std::size_t>(record.bytes.at(kLength));
+    if (length != parol6::kCommandPayloadSize) {
+      number = length;
+    } else {
+      after.at(number) += record.bytes.size();
+    }
+  }
+  for (const std::size_t length : {0U, 1U, 50U, 54U, 180U, 255U}) {
+    EXPECT_GE(after.at(length), length) << length;
+  }
+}
+
+TEST(Exercises, WriteBlanksWherePiecesBeginAndEnd) {
+  const auto lines = lines_in(server().exercises().blanks(server().setting("EStop")));
+  EXPECT_TRUE(has(lines, "EStop\t\r\n"));
+  EXPECT_TRUE(has(lines, " EStop\r\n"));
+  EXPECT_TRUE(std::ranges::any_of(
+      lines, [](const auto& line) { return line.starts_with("RunObjective\t:"); }));
+}
+
+TEST(Exercises, CutTwoLinesAtEachPlace) {
+  const auto lines = lines_in(server().exercises().cut_across(server().setting("EStop")));
+  for (const Lines& cut : {Lines{"EStop\r", "\nEStop\r\n"}, Lines{"EStop\r\nE", "Stop\r\n"}}) {
+    EXPECT_FALSE(std::ranges::search(lines, cut).empty());
+  }
+}
+
 TEST(Exercises, WriteLinesThatAreTooLongAndNearlyRight) {
   const auto& setting = server().setting("EStop");
   const auto padded = lines_in(server().exercises().padded(setting));
