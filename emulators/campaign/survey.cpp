@@ -6,7 +6,6 @@
 #include <chrono>
 #include <initializer_list>
 #include <iterator>
-#include <span>
 #include <string_view>
 #include <utility>
 
@@ -22,15 +21,12 @@ using namespace std::chrono_literals;
 constexpr Duration kTick = 12ms;
 constexpr Duration kShort = 1000ms;
 
-/// As opposed to one whose name is that of another before it but for a number.
-bool is_first_of_its_kind(std::span<const Field> fields, std::size_t number) {
+/// Whether the names are the same but for a number, as of `speed.j1` and `speed.j2`.
+bool are_of_a_row(const Field& one, const Field& other) {
   const auto without_number = [](std::string_view name) {
     return name.substr(0, name.find_last_not_of("0123456789") + 1);
   };
-  return std::none_of(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(number),
-                      [&](const Field& before) {
-                        return without_number(before.name) == without_number(fields[number].name);
-                      });
+  return without_number(one.name) == without_number(other.name);
 }
 
 }  // namespace
@@ -183,8 +179,7 @@ std::vector<Survey::Case> Survey::plan_values(std::size_t state, OfField of_fiel
       auto body = (exercises_.*of_field)(setting, field);
       if (material_.permit) material_.permit(body);
       if (body.empty()) continue;
-      const bool is_first = is_first_of_its_kind(setting.message.fields, number);
-      auto& cases = is_first && matters(setting, field) ? cases_ : idle_ones;
+      auto& cases = matters_first(setting, field) ? cases_ : idle_ones;
       cases.emplace_back([this, &setting, &field, of_field] {
         return whole(setting, (exercises_.*of_field)(setting, field));
       });
@@ -206,6 +201,14 @@ bool Survey::matters(const Setting& setting, const Field& field) {
            as_it_is;
   });
   return known->second;
+}
+
+/// And none of the same row does before it.
+bool Survey::matters_first(const Setting& setting, const Field& field) {
+  const auto does_too = [&](const Field& before) {
+    return &before < &field && are_of_a_row(before, field) && matters(setting, before);
+  };
+  return matters(setting, field) && std::ranges::none_of(setting.message.fields, does_too);
 }
 
 Script Survey::whole(const Setting& setting, const Script& body) const {

@@ -43,6 +43,7 @@ class Survey {
   [[nodiscard]] std::vector<Case> plan_values(std::size_t state, OfField of_field);
   [[nodiscard]] std::vector<Case> tour_cases();
   void put_after_short_ones(std::vector<Case> cases, std::size_t begin);
+  [[nodiscard]] bool matters_first(const Setting& setting, const Field& field);
   [[nodiscard]] bool matters(const Setting& setting, const Field& field);
   [[nodiscard]] Script whole(const Setting& setting, const Script& body) const;
 
