@@ -223,8 +223,8 @@ class Run {
   /// A moment that was missed twice. On a busy machine it has to be missed again beside each
   /// emulated device that is in time.
   Finding doubt_moment(const Case& one, Finding finding) {
-    if (!options_.is_busy || !options_.is_busy())
-      return doubt(one, std::move(finding), kReferences);
+    const bool is_busy = options_.is_busy && options_.is_busy();
+    if (!is_busy) return doubt(one, std::move(finding), kReferences);
     for (int i = 0; i < kReferences; ++i) {
       finding = doubt(one, std::move(finding), 1);
       if (finding.judgement.verdict != Verdict::kFail) return finding;

@@ -34,12 +34,9 @@ std::vector<std::size_t> all_sequences(std::size_t symbols) {
   return all;
 }
 
-/// Whether somebody wrote down what its code means.
+/// Whether its code, if it has one, is known.
 bool is_named(const Message& message) {
-  const auto* const code = code_in(message);
-  if (code == nullptr || code->values.empty()) return true;
-  return std::ranges::find(code->values, field_value(*code, message.raw), &NamedValue::value) !=
-         code->values.end();
+  return code_in(message) == nullptr || name_of_code(message) != nullptr;
 }
 
 }  // namespace

@@ -49,11 +49,9 @@ void leave_out_repetitions(Script& script) {
 /// Its name and that of its code; those without a name are of one kind.
 std::string name_of(const Message& message) {
   std::string name{message.name};
-  const auto* const code = code_in(message);
-  if (code == nullptr) return name;
-  const auto named =
-      std::ranges::find(code->values, field_value(*code, message.raw), &NamedValue::value);
-  return name.append(named == code->values.end() ? "?" : named->name);
+  if (code_in(message) == nullptr) return name;
+  const auto* const named = name_of_code(message);
+  return name.append(named == nullptr ? "?" : named->name);
 }
 
 }  // namespace

@@ -68,9 +68,9 @@ KeptRecord as_done(KeptRecord record) {
 std::string choice_in(const Message& message) {
   const auto* const code = code_in(message);
   if (code == nullptr) return std::string{message.name};
-  const auto value = field_value(*code, message.raw);
-  const auto named = std::ranges::find(code->values, value, &NamedValue::value);
-  const auto word = named == code->values.end() ? std::to_string(value) : std::string{named->name};
+  const auto* const named = name_of_code(message);
+  const auto word =
+      named == nullptr ? std::to_string(field_value(*code, message.raw)) : std::string{named->name};
   return word == message.name ? word : fmt::format("{} {}", message.name, word);
 }
 
@@ -211,6 +211,14 @@ const Field* code_in(const Message& message) {
     return field.encoding == Encoding::kCode && !field.values.empty();
   });
   return found == message.fields.end() ? nullptr : &*found;
+}
+
+const NamedValue* name_of_code(const Message& message) {
+  const auto* const code = code_in(message);
+  if (code == nullptr) return nullptr;
+  const auto named =
+      std::ranges::find(code->values, field_value(*code, message.raw), &NamedValue::value);
+  return named == code->values.end() ? nullptr : &*named;
 }
 
 std::string words_of(const KeptRecord& record, MakeDissector make_dissector) {

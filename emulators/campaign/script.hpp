@@ -81,6 +81,8 @@ void shift_from(Script& script, std::size_t place, Duration by);
 
 /// The code that says most of a message, as that of a command; nullptr: it has none.
 [[nodiscard]] const Field* code_in(const Message& message);
+/// What that code is called; nullptr: it has none, or nobody has named it.
+[[nodiscard]] const NamedValue* name_of_code(const Message& message);
 
 /// The record in a few words, as in `command jog`.
 [[nodiscard]] std::string words_of(const KeptRecord& record, MakeDissector make_dissector);

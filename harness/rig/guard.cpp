@@ -171,7 +171,6 @@ void Guard::report_change() {
 
 /// Nothing can be reported from here, so errors of the port end it.
 void Guard::stop() {
-  watch_->has_left_moving = false;
   for (int i = 0; i < patience_.stops; ++i) {
     std::vector<std::vector<std::byte>> messages;  // a copy, for judging changes the judge
     for (const auto message : judge_->stop()) messages.emplace_back(message.begin(), message.end());
@@ -180,6 +179,7 @@ void Guard::stop() {
       assert(!refusal);
       if (const auto done = hand_over(message); !done && !is_passing(done.error())) return;
     }
+    watch_->has_left_moving = false;
     if (!settle(time() + patience_.between) || !judge_->may_be_moving()) return;
   }
 }

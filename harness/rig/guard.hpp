@@ -108,7 +108,7 @@ class Guard {
   /// After something was sent or observed.
   void look();
   void stop_if_moving();
-  void stop();
+  void stop();  ///< whoever moved it
   [[nodiscard]] bool may_be_moving() const { return judge_->may_be_moving(); }
 
   /// What the device sent.

@@ -202,7 +202,7 @@ GuardedSource::GuardedSource(std::unique_ptr<SessionSource> inner,
 GuardedSource::~GuardedSource() {
   if (!watch_->has_left_moving) return;
   GuardedSession last{inner().make_port(), make_judge_(), {}, watch_};
-  if (last.connect(last.now() + kServerAccepts)) last.stop_arm();
+  if (last.connect(last.now() + kServerAccepts)) last.stop();
 }
 
 void GuardedSource::pause(Duration duration) {

@@ -70,8 +70,7 @@ class GuardedSession final : public SessionAround, public Guard {
   void close() override;
   void reset() override;
 
-  /// Whoever moved it.
-  void stop_arm() { stop(); }
+  using Guard::stop;
 
  private:
   Result<void> put(Bytes message) override { return inner().send(message); }

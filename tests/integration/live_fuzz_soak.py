@@ -240,7 +240,15 @@ def come_first():
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
 
 
+def unknown():
+    """What was chosen and is in no list: of that nothing would be played."""
+    known = {*DEVICES, *(f"{device}:{name}" for device, names in SHORTEST.items() for name in names)}
+    return [one for one in CHOSEN if one not in known]
+
+
 def main():
+    if unknown():
+        sys.exit(f"{', '.join(unknown())}: no such device or defect; see DEVICES here and tests/integration/rare_defects.py")
     come_first()
     begun = time.time()
     what = {"rare": rare, "sound": lambda: side_by_side(sound_one), "known": lambda: side_by_side(known_one)}[WHAT]
