@@ -148,7 +148,8 @@ class Run {
       is_alive_ = false;
     } else if (judgement.is_silence && !may_have_died_of(one) &&
                !check_alive(fmt::format("after {}", name_of(one)))) {
-      judgement.verdict = Verdict::kError;
+      // One that says other things is no matter of the rig.
+      if (bench_.judgement().verdict != Verdict::kFail) judgement.verdict = Verdict::kError;
       is_alive_ = false;
     } else if (judgement.verdict == Verdict::kFail && deviates_as_known(one)) {
       judgement.verdict = Verdict::kDeviation;

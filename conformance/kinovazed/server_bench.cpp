@@ -481,7 +481,11 @@ bool ServerBench::is_alive() {
   } else if (stop_all()) {
     return true;
   }
-  if (!client().unfinished.empty()) fail_by_no_line("Accepted (EStop)", answer_time());
+  if (!client().unfinished.empty()) {
+    fail_by_no_line("Accepted (EStop)", answer_time());
+  } else if (next_beat(now(), kBeatTime + noise())) {
+    fail("Accepted (EStop)", "heartbeats and no answer");
+  }
   return false;
 }
 

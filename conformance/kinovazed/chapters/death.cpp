@@ -263,10 +263,24 @@ constexpr Clause kDeathClauses[] = {
     variant("y-high", dies("2 mm outside: nothing comes.", on<hangs<pull_door_outside<3>>>)),
     variant("z-high", dies("2 mm outside: nothing comes.", on<hangs<pull_door_outside<4>>>)),
 
-    unobservable("the errors that do so have requirements of their own",
-                 must("kinovazed.death.process",
-                      "Some errors end the process: its clients see the end of their connections.",
-                      "server; reference 11.3", Profiles::kFirmware)),
+    must("kinovazed.death.process",
+         "Some errors end the process: its clients see the end of their connections, those that "
+         "wait, too.",
+         "server; reference 11.3", Profiles::kFirmware),
+    dies("Of three clients, two of which wait, each sees the end.",
+         [](ServerBench& server) {
+           for (const auto waiting : {1U, 2U}) {
+             server.as(waiting);
+             server.connect();
+           }
+           server.as(0);
+           ask_position(server);
+           for (const auto client : {0U, 1U, 2U}) {
+             server.as(client);
+             server.about(fmt::format("client {} of three", client + 1));
+             server.expect_end();
+           }
+         }),
 
     unobservable("it needs a file of objectives that no client can give",
                  must("kinovazed.death.first-point",

@@ -65,8 +65,9 @@ struct Push {
   Duration time;
 };
 
-/// The way back to Home behind some deflections, one after the other.
-Duration way_back(ServerBench& server, std::string_view mode, std::initializer_list<Push> pushes) {
+/// Leads the arm away from Home by some deflections, one after the other.
+void push_from_home(ServerBench& server, std::string_view mode,
+                    std::initializer_list<Push> pushes) {
   (void)time_of(server, "Home");
   server.perform("SetJoystickMode:" + std::string{mode}, Event::kJoystickModeSet);
   for (const auto& [axis, number, time] : pushes) {
@@ -74,6 +75,11 @@ Duration way_back(ServerBench& server, std::string_view mode, std::initializer_l
     server.pause(time);
   }
   server.accept(kStop);
+}
+
+/// The way back to Home behind some deflections.
+Duration way_back(ServerBench& server, std::string_view mode, std::initializer_list<Push> pushes) {
+  push_from_home(server, mode, pushes);
   return time_of(server, "Home");
 }
 
@@ -90,6 +96,23 @@ void three_axes(ServerBench& server) {
     server.about(fmt::format("number {} of {} with another back", axis + 1, mode));
     expect_time(server, aside - back, kAway, ServerBench::kMotionTime);
   }
+}
+
+/// An axis of the joystick, and the objective that lies farthest to the side to which its positive
+/// numbers lead.
+struct Side {
+  std::size_t axis;
+  const char* objective;
+};
+
+/// How much nearer it is after a push to its side than after one the other way.
+Duration nearer_by(ServerBench& server, const Side& side) {
+  const auto way_after = [&](int number) {
+    push_from_home(server, kXyz, {{side.axis, number, kPush}});
+    return time_of(server, side.objective);
+  };
+  const auto to_it = way_after(400);
+  return way_after(-400) - to_it;
 }
 
 struct Ending {
@@ -298,6 +321,25 @@ constexpr Clause kJoystickClauses[] = {
                       on<three_axes<kXyz>>)),
     variant("rotation", in(kIdle, "There and back on each axis, and not back by another.",
                            on<three_axes<kRotation>>)),
+
+    must("kinovazed.joystick.signs",
+         "In mode XYZ positive numbers lead the hand up, to the right and to the front, which is "
+         "along +z, -x and -y of the frame of the objectives; where somebody has turned the arm "
+         "by half, along +x and +y.",
+         "document; server; reference 8.1"),
+    in(kIdle, "Antenna is nearer after a push up, SuckDoor to the right and Handle to the front.",
+       [](ServerBench& server) {
+         const auto up = nearer_by(server, {2, "Antenna"});
+         const auto to_the_right = nearer_by(server, {0, "SuckDoor"});
+         auto to_the_front = nearer_by(server, {1, "Handle"});
+         server.about("Antenna after a push up, against one down");
+         expect_time(server, up, kAway, ServerBench::kMotionTime);
+         if (to_the_right < 0ms) to_the_front = -to_the_front;
+         server.about("SuckDoor after a push in x, against the other way");
+         expect_time(server, std::chrono::abs(to_the_right), kAway, ServerBench::kMotionTime);
+         server.about("Handle after a push in y, against the other way, turned like x");
+         expect_time(server, to_the_front, kAway, ServerBench::kMotionTime);
+       }),
 
     must("kinovazed.joystick.proportional", "Half the deflection leads half as far.",
          "server; reference 8.1"),

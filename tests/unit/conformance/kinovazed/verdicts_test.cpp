@@ -143,11 +143,14 @@ TEST(ServerVerdicts, AnUnchangedServerPasses) {
   EXPECT_EQ(conclusion_of(run(unchanged)), Conclusion::kPassed);
 }
 
-/// A connection to a server that is switched off at some time.
+/// What becomes of a server at some time: it is off, or takes no bytes in and beats on.
+enum class Breaks { kOff, kDeaf };
+
+/// A connection to such a server.
 class BrokenSession final : public SessionAround {
  public:
-  BrokenSession(std::unique_ptr<SessionPort> port, Instant end)
-      : PortAround{std::move(port)}, end_{end} {}
+  BrokenSession(std::unique_ptr<SessionPort> port, Instant end, Breaks how)
+      : PortAround{std::move(port)}, end_{end}, how_{how} {}
 
   Result<void> connect(Instant deadline) override {
     if (is_off()) return fail(ErrorCode::kRefused);
@@ -155,10 +158,12 @@ class BrokenSession final : public SessionAround {
   }
   Result<void> send(Bytes segment) override {
     if (is_off()) return fail(ErrorCode::kDisconnected);
+    if (now() >= end_) return {};
     return inner().send(segment);
   }
   Result<Received> receive(std::span<std::byte> into, Instant deadline) override {
     if (is_off()) return Received{Arrival::kReset, 0};
+    if (how_ == Breaks::kDeaf) return inner().receive(into, deadline);
     return inner().receive(into, std::min(deadline, std::max(end_, now())));
   }
   void half_close() override { inner().half_close(); }
@@ -166,34 +171,38 @@ class BrokenSession final : public SessionAround {
   void reset() override { inner().reset(); }
 
  private:
-  [[nodiscard]] bool is_off() const { return now() >= end_; }
+  [[nodiscard]] bool is_off() const { return how_ == Breaks::kOff && now() >= end_; }
 
   Instant end_;
+  Breaks how_;
 };
 
 class BrokenServer final : public SourceAround {
  public:
-  explicit BrokenServer(Duration life)
+  explicit BrokenServer(Duration life, Breaks how = Breaks::kOff)
       : SourceAround{test::wiring<cli::OnServer>("kinovazed")
                          .open_emulated(parse_target("emulated:").value())
                          .value(),
-                     [this, life](std::unique_ptr<SessionPort> port) {
+                     [this, life, how](std::unique_ptr<SessionPort> port) {
                        if (!end_) end_ = port->now() + life;
-                       return std::make_unique<BrokenSession>(std::move(port), *end_);
+                       return std::make_unique<BrokenSession>(std::move(port), *end_, how);
                      }} {}
 
  private:
   std::optional<Instant> end_;
 };
 
-void expect_no_finding(const Selection& selection, Duration life) {
-  const auto bench = make_bench(Rig<SessionSource>{std::make_unique<BrokenServer>(life)},
+Report run_broken(const Selection& selection, Duration life, Breaks how) {
+  const auto bench = make_bench(Rig<SessionSource>{std::make_unique<BrokenServer>(life, how)},
                                 {.permissions = Permissions::all()});
-  ASSERT_TRUE(bench);
   RunOptions options;
   options.selection = selection;
   options.permissions = Permissions::all();
-  const auto report = run_suite(suite(), **bench, options, [](const ReportRow&) {});
+  return run_suite(suite(), **bench, options, [](const ReportRow&) {});
+}
+
+void expect_no_finding(const Selection& selection, Duration life) {
+  const auto report = run_broken(selection, life, Breaks::kOff);
   for (const auto& row : report.rows) {
     EXPECT_NE(row.verdict, Verdict::kFail) << life.count() << " ns: " << to_text(row);
   }
@@ -212,6 +221,24 @@ TEST(ServerVerdicts, AServerThatIsSwitchedOffWhileItsBeatsAreCountedIsNoFinding)
   Selection beats;
   beats.filter = "kinovazed.beat.";
   for (Duration life = 1ms; life < 30s; life += 370ms) expect_no_finding(beats, life);
+}
+
+TEST(ServerVerdicts, AServerThatBeatsOnAndDoesNotAnswerIsAFinding) {
+  using namespace std::chrono_literals;
+  Selection quick;
+  quick.tier = Tier::kQuick;
+  for (Duration life = 1ms; life < 20s; life += 1370ms) {
+    const auto report = run_broken(quick, life, Breaks::kDeaf);
+    EXPECT_EQ(conclusion_of(report), Conclusion::kFindings) << life.count() << " ns";
+    EXPECT_EQ(report.count(Verdict::kError), 0U) << life.count() << " ns";
+    EXPECT_TRUE(std::ranges::any_of(report.rows,
+                                    [](const ReportRow& row) {
+                                      return row.name == "kinovazed.alive" &&
+                                             row.verdict == Verdict::kFail &&
+                                             row.actual == "heartbeats and no answer";
+                                    }))
+        << life.count() << " ns";
+  }
 }
 
 TEST(OnlyLooking, SendsNothingToAnArmThatIsInUse) {
