@@ -14,6 +14,12 @@
 // it from the emulator of this program. Prints what they differ in, or "same"; then that again
 // where moments count that are further apart than `armjig fuzz` lets pass of a live device.
 //
+//   mutation_judge reach DEVICE OBJECT TARGET quick|full AGAIN
+//
+// tells whether the suite finds it out as over a link, where nobody has a hand at the device but
+// for its input AGAIN, which starts it again, and a guard stands between; in virtual time. Prints
+// "killed: CASE" or "survived: N cases passed".
+//
 //   mutation_judge serve DEVICE OBJECT ARGUMENT...
 //
 // is the armjig program, with those arguments, that has this emulator instead of its own.
@@ -21,13 +27,16 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "cli/beside.hpp"
@@ -39,6 +48,7 @@
 #include "harness/compare/rules.hpp"
 #include "harness/rig/target.hpp"
 #include "tests/mutation/judged.hpp"
+#include "tests/mutation/without_hands.hpp"
 
 namespace armjig::mutation {
 namespace {
@@ -92,17 +102,12 @@ PlaySessions sessions_as_they_are(const cli::Device& device, const Target& targe
 }
 
 /// What the suite says: the first case that fails, or how many passed.
-/// `own` has the emulator of this program.
-std::string judgement(const cli::Device& device, const cli::Device& own, const Target& target,
-                      Tier tier) {
-  const auto bench = cli::open_bench(device, {.target = target});
-  if (!bench) return "killed: the start, " + describe(bench.error());
-  (*bench)->know_sessions(sessions_as_they_are(device, target, own));
+std::string judgement(const cli::Device& device, Bench& bench, Tier tier) {
   RunOptions run;
   run.selection.tier = tier;
   run.stops_at_first_failure = true;
   run.permissions = Permissions::all();
-  const auto report = run_suite(device.suite(), **bench, run, [](const ReportRow&) {});
+  const auto report = run_suite(device.suite(), bench, run, [](const ReportRow&) {});
   for (const auto& row : report.rows) {
     if (row.verdict == Verdict::kFail || row.verdict == Verdict::kError) {
       return "killed: " + row.name;
@@ -112,6 +117,73 @@ std::string judgement(const cli::Device& device, const cli::Device& own, const T
                      std::ranges::count(report.rows, Verdict::kPass, &ReportRow::verdict));
 }
 
+/// The same with all that an emulated device offers. `own` has the emulator of this program.
+std::string judgement_in_memory(const cli::Device& device, const cli::Device& own,
+                                const Target& target, Tier tier) {
+  const auto bench = cli::open_bench(device, {.target = target});
+  if (!bench) return "killed: the start, " + describe(bench.error());
+  (*bench)->know_sessions(sessions_as_they_are(device, target, own));
+  return judgement(device, **bench, tier);
+}
+
+/// What stands for a real device. Those who open one have plain functions, which cannot keep it.
+struct Reached {
+  const cli::Device* device{};
+  Target emulated;
+  Endpoint* port{};  ///< of the emulated one, when it is there
+};
+Reached reached;
+
+template <class Kind>
+Outcome<std::unique_ptr<typename Kind::Port>> open_reached(const Target& /*place*/,
+                                                           const SerialLine& /*line*/) {
+  const auto& kind = std::get<Kind>(reached.device->port);
+  return cli::wiring_of(*reached.device, kind).open_emulated(reached.emulated).map([](auto port) {
+    reached.port = port.get();
+    return without_hands(std::move(port));
+  });
+}
+
+/// Starts the device again, and nothing else.
+Hand hand_for(std::string_view again) {
+  return {.has = [again](std::string_view input) { return input == again; },
+          .set =
+              [again](std::string_view input, std::int64_t value) {
+                return input == again && reached.port->touch(input, value);
+              }};
+}
+
+/// The same as over a link.
+template <class Kind>
+std::string judgement_within_reach(const Kind& kind, std::string_view place, Tier tier,
+                                   std::string_view again) {
+  const auto& device = *reached.device;
+  auto wiring = cli::wiring_of(device, kind);
+  wiring.open_real = open_reached<Kind>;
+  RigOptions how;
+  how.target = *parse_target(std::string{place});
+  how.permissions = Permissions::all();
+  how.when_left = WhenLeft::kSayNothing;
+  auto rig = Rig<typename Kind::Port>::open(wiring, how);
+  if (!rig) return "killed: the start, " + describe(rig.error());
+  const auto bench = kind.make_bench(*std::move(rig), how);
+  if (!bench) return "killed: the start, " + describe(bench.error());
+  (*bench)->set_hand(hand_for(again));
+  return judgement(device, **bench, tier);
+}
+
+std::string judgement_within_reach(const cli::Device& device, const Target& target, Tier tier,
+                                   std::string_view again) {
+  constexpr std::array<std::string_view, 3> kPlaces{"pty:/dev/null", "tcp:localhost:1",
+                                                    "i2c:/dev/null"};
+  reached = {&device, target};
+  return std::visit(
+      [&](const auto& kind) {
+        return judgement_within_reach(kind, kPlaces.at(device.port.index()), tier, again);
+      },
+      device.port);
+}
+
 Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Target& target,
                     Tier tier, const std::vector<std::string>& folders) {
   const auto where = told_apart_by(device, folders);
@@ -119,7 +191,7 @@ Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Tar
   fmt::print("{}\n", where->empty() ? "same" : "differs: " + *where);
   std::fflush(stdout);
   if (where->empty() && std::getenv("ARMJIG_JUDGE_ALL") == nullptr) return {};
-  fmt::print("{}\n", judgement(device, own, target, tier));
+  fmt::print("{}\n", judgement_in_memory(device, own, target, tier));
   return {};
 }
 
@@ -176,6 +248,11 @@ int run(std::span<char*> arguments) {
         judge_on_wire(device, **found, *target, std::strtoull(arguments[5], nullptr, 10)));
   }
   const auto tier = std::string_view{arguments[5]} == "quick" ? Tier::kQuick : Tier::kFull;
+  if (std::string_view{arguments[1]} == "reach") {
+    if (arguments.size() < 7) return kWrongUsage;
+    fmt::print("{}\n", judgement_within_reach(device, *target, tier, arguments[6]));
+    return 0;
+  }
   const auto folders = arguments.subspan(6);
   return exit_code_of(judge(device, **found, *target, tier, {folders.begin(), folders.end()}));
 }
