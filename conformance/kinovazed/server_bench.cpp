@@ -191,6 +191,11 @@ void ServerBench::expect_end() {
   }
 }
 
+void ServerBench::expect_close() {
+  expect_end();
+  expect_true(!client().was_reset, "the end of the connection", "its reset");
+}
+
 void ServerBench::expect_quiet(Duration time) {
   const auto word = next_word(time);
   if (word) return fail_by("nothing but beats", *word);
@@ -236,6 +241,7 @@ void ServerBench::read_until(Instant deadline) {
   if (!received || received->arrival == SessionPort::Arrival::kEnd ||
       received->arrival == SessionPort::Arrival::kReset) {
     client().has_ended = true;
+    client().was_reset = received && received->arrival == SessionPort::Arrival::kReset;
     remember("<", "the end of the connection");
     return;
   }

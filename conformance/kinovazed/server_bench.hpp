@@ -74,8 +74,10 @@ class ServerBench final : public PortBench<SessionSource> {
   void leave();           ///< closes both directions
   void finish_sending();  ///< and still reads
   void throw_away();      ///< resets
-  /// The server closes the connection, now.
+  /// The server closes or resets the connection, now.
   void expect_end();
+  /// It closes it, as who has read all that came.
+  void expect_close();
   /// It does not, and says nothing but beats, for so long.
   void expect_quiet(Duration time);
 
@@ -154,6 +156,7 @@ class ServerBench final : public PortBench<SessionSource> {
     std::unique_ptr<SessionPort> port;
     bool is_connected = false;
     bool has_ended = false;
+    bool was_reset = false;  ///< if it has ended
     std::string unfinished;
     std::size_t count = 0;
     std::deque<Heard> words;

@@ -31,7 +31,7 @@ void half_close(ServerBench& server) {
   server.say("EStop");
   server.finish_sending();
   server.expect(Event::kAccepted);
-  server.expect_end();
+  server.expect_close();
 }
 
 void say_while_waiting(ServerBench& server, std::string_view text) {

@@ -93,6 +93,16 @@ void reset_at_freeze(ServerBench& server) {
   server.connect();
 }
 
+void close_at_freeze(ServerBench& server) {
+  server.spoil();
+  server.begin_race();
+  server.send("Freeze\r\nUnfreeze\r\n");
+  server.leave();
+  server.as(1);
+  server.pause(300ms);
+  server.connect();
+}
+
 /// Where the hand has to be so that the second way-point of PullDoor, (-0.45, -0.08, -0.272) in its
 /// frame, lies on an edge of the workspace, and the component that leads over it.
 struct Edge {
@@ -362,13 +372,16 @@ constexpr Clause kDeathClauses[] = {
 
     must("kinovazed.death.mute",
          "A write that fails while another message waits behind it mutes the server for good: "
-         "Freeze and a reset do.",
-         "server, transcript S11", Profiles::kFirmware, "kinovazed.death.no-mute"),
+         "Freeze and a reset do, and Freeze with Unfreeze and a close.",
+         "server, transcript S11, recording defect-mute-after-close", Profiles::kFirmware,
+         "kinovazed.death.no-mute"),
     quick(dies("The next client hears nothing.", on<hangs<reset_at_freeze>>)),
+    variant("closed", dies("The next client hears nothing.", on<hangs<close_at_freeze>>)),
 
     should("kinovazed.death.no-mute", "Freeze and a reset do no harm.",
            "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mute"),
     dies("EStop of the next client is answered.", on<lives<reset_at_freeze>>),
+    variant("closed", dies("EStop of the next client is answered.", on<lives<close_at_freeze>>)),
 };
 
 }  // namespace
