@@ -54,6 +54,10 @@ class Exercises {
   [[nodiscard]] Script sweep(const Setting& setting) const;
   /// With each other number in place of that of the bytes which follow, and as many bytes.
   [[nodiscard]] Script false_lengths(const Setting& setting) const;
+  /// On a bus: each byte that a message may begin with, alone, and a read after it.
+  [[nodiscard]] Script all_codes(const Setting& setting) const;
+  /// On a bus: each two messages that ask as one, and a read after it.
+  [[nodiscard]] Script two_codes(const Setting& setting) const;
   /// The bytes that begin or end messages, at each place in it.
   [[nodiscard]] Script marked(const Setting& setting) const;
   /// On a bus: what was chosen once is read again and again, also as it changes.

@@ -166,6 +166,33 @@ Script Exercises::false_lengths(const Setting& setting) const {
   return body;
 }
 
+Script Exercises::all_codes(const Setting& setting) const {
+  Script body;
+  const auto& looks = repertoire_.looks();
+  if (material_.kind != LinkKind::kBus || looks.empty()) return body;
+  const auto& sent = setting.exchange.front();
+  for (std::size_t code = 0; code < 256; ++code) {
+    // What is asked before differs, for what is no code leaves that chosen.
+    auto exchange = to(sent.id, looks[code % looks.size()]);
+    exchange.insert(exchange.begin() + 1, sending(sent, {static_cast<std::byte>(code)}));
+    add(body, exchange);
+  }
+  return body;
+}
+
+Script Exercises::two_codes(const Setting& setting) const {
+  Script body;
+  for (const auto& look : repertoire_.looks()) {
+    for (const auto& other : repertoire_.looks()) {
+      auto exchange = to(setting.exchange.front().id, look);
+      const auto& codes = other.front().bytes;
+      exchange.front().bytes.insert(exchange.front().bytes.end(), codes.begin(), codes.end());
+      add(body, exchange);
+    }
+  }
+  return body;
+}
+
 /// Cut by a byte, and with a number that it hardly takes.
 std::vector<Script> Exercises::refused_forms(const Setting& setting) const {
   constexpr std::size_t kMostForms = 6;

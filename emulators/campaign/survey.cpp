@@ -62,6 +62,7 @@ void Survey::plan() {
          {&Exercises::all_fields, &Exercises::variants, &Exercises::reads_again, &Exercises::sums});
   of_one(&Exercises::held_codes);
   of_one(&Exercises::false_lengths);
+  of_first({&Exercises::all_codes, &Exercises::two_codes});
   if (!repertoire_.kinds().empty()) {
     plan_all(repertoire_.kinds().front().front(), exercises_.told_sequences());
   }

@@ -7,9 +7,11 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "harness/rig/judge.hpp"
@@ -176,6 +178,31 @@ TEST(Exercises, GiveEachLengthAndAsManyBytes) {
   for (const std::size_t length : {0U, 1U, 50U, 54U, 180U, 255U}) {
     EXPECT_GE(after.at(length), length) << length;
   }
+}
+
+TEST(Exercises, WriteEachCodeToANodeAndReadAfterIt) {
+  std::array<bool, 256> is_read{};
+  const auto script = node().exercises().all_codes(node().setting("disable"));
+  for (std::size_t i = 1; i < script.size(); ++i) {
+    const auto& sent = script[i - 1];
+    const bool is_code = sent.direction == Direction::kToDevice && sent.bytes.size() == 1;
+    if (!is_code || script[i].direction != Direction::kFromDevice) continue;
+    is_read.at(std::to_integer<std::size_t>(sent.bytes.front())) = true;
+  }
+  EXPECT_TRUE(std::ranges::all_of(is_read, std::identity{}));
+}
+
+TEST(Exercises, WriteTwoCodesThatAskAsOneMessage) {
+  std::set<std::pair<std::byte, std::byte>> pairs;
+  for (const auto& record : node().exercises().two_codes(node().setting("disable"))) {
+    if (record.direction == Direction::kFromDevice) continue;
+    ASSERT_EQ(record.bytes.size(), 2U);
+    pairs.emplace(record.bytes[0], record.bytes[1]);
+  }
+  std::set<std::byte> codes;
+  for (const auto& [one, other] : pairs) codes.insert({one, other});
+  EXPECT_GT(codes.size(), 5U);
+  EXPECT_EQ(pairs.size(), codes.size() * codes.size());
 }
 
 TEST(Exercises, WriteBlanksWherePiecesBeginAndEnd) {
