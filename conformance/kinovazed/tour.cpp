@@ -18,9 +18,9 @@ namespace {
 using namespace std::chrono_literals;
 
 /// How far a leg may be off the pace of the others: the server looks every 10 ms and five calls,
-/// and the arm goes on meanwhile.
+/// and the arm goes on meanwhile, at the beginning and at each way-point.
 Duration slack(const ServerBench& server, Duration time) {
-  return 40ms + 3 * server.noise() + time / 100;
+  return 40ms + 8 * server.noise() + time / 100;
 }
 
 /// How long it takes; none: a relative one that does not end, whose way-points may be out of this

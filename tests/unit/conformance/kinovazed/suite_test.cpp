@@ -75,6 +75,17 @@ TEST(KinovazedSuite, AccusesNoServerWhoseArmTakesUpTo19MsACall) {
   }
 }
 
+/// Where an arm is when it is looked at is another place each time.
+TEST(KinovazedSuite, TakesTheWaysOfASlowArmForWhatTheyAreEachTime) {
+  RunOptions options;
+  options.selection.filter = "kinovazed.objective.ways";
+  options.repeat = 12;
+  for (const auto* call_us : {"3000", "5000", "8000", "10000", "12000", "19000"}) {
+    const auto report = run(fmt::format("emulated:?call-us={}", call_us), options);
+    EXPECT_THAT(but_passed(report), testing::IsEmpty()) << call_us;
+  }
+}
+
 TEST(KinovazedSuite, FindsAServerSlowFromItsFirstAnswerOnThatNoLinkExcuses) {
   RunOptions options;
   options.selection.filter = "kinovazed.time.answer.stopped";

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -73,14 +76,26 @@ std::vector<Live> all_live() {
   return all;
 }
 
+/// A moment that no model met may show once; a campaign takes what it sees only if it comes again.
 TEST(Stage, HearsOfAStandInWhatSomeModelSays) {
   constexpr std::size_t kEvery = 41;
+  constexpr std::array<std::size_t, 3> kAgain{1000, 2000, 3000};
   for (const auto& live : all_live()) {
     const Survey survey{live.material(), 1};
+    std::size_t shown = 0;
     for (std::size_t i = 0; i < survey.size(); i += kEvery) {
-      const auto symptom = live.symptom(survey.at(i), i, live.rules());
-      EXPECT_FALSE(symptom) << i << ": " << symptom->key() << ", " << symptom->actual;
+      const auto script = survey.at(i);
+      const auto symptom = live.symptom(script, i, live.rules());
+      if (!symptom) continue;
+      ++shown;
+      EXPECT_FALSE(
+          std::ranges::all_of(kAgain,
+                              [&](std::size_t again) {
+                                return live.symptom(script, i + again, live.rules()).has_value();
+                              }))
+          << i << ": " << symptom->key() << ", " << symptom->actual;
     }
+    EXPECT_LE(shown, 1U);
   }
 }
 
