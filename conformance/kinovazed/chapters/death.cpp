@@ -83,21 +83,13 @@ void reset_waiting(ServerBench& server) {
   server.pause(300ms);
 }
 
-void reset_at_freeze(ServerBench& server) {
+/// A client that does not wait for its answers.
+template <void (ServerBench::*end)()>
+void end_at_freeze(ServerBench& server) {
   server.spoil();
   server.begin_race();
   server.send("Freeze\r\nUnfreeze\r\n");
-  server.throw_away();
-  server.as(1);
-  server.pause(300ms);
-  server.connect();
-}
-
-void close_at_freeze(ServerBench& server) {
-  server.spoil();
-  server.begin_race();
-  server.send("Freeze\r\nUnfreeze\r\n");
-  server.leave();
+  (server.*end)();
   server.as(1);
   server.pause(300ms);
   server.connect();
@@ -375,13 +367,17 @@ constexpr Clause kDeathClauses[] = {
          "Freeze and a reset do, and Freeze with Unfreeze and a close.",
          "server, transcript S11, recording defect-mute-after-close", Profiles::kFirmware,
          "kinovazed.death.no-mute"),
-    quick(dies("The next client hears nothing.", on<hangs<reset_at_freeze>>)),
-    variant("closed", dies("The next client hears nothing.", on<hangs<close_at_freeze>>)),
+    quick(
+        dies("The next client hears nothing.", on<hangs<end_at_freeze<&ServerBench::throw_away>>>)),
+    variant("closed",
+            dies("The next client hears nothing.", on<hangs<end_at_freeze<&ServerBench::leave>>>)),
 
-    should("kinovazed.death.no-mute", "Freeze and a reset do no harm.",
+    should("kinovazed.death.no-mute", "Freeze and the end of a connection do no harm.",
            "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mute"),
-    dies("EStop of the next client is answered.", on<lives<reset_at_freeze>>),
-    variant("closed", dies("EStop of the next client is answered.", on<lives<close_at_freeze>>)),
+    dies("EStop of the next client is answered.",
+         on<lives<end_at_freeze<&ServerBench::throw_away>>>),
+    variant("closed", dies("EStop of the next client is answered.",
+                           on<lives<end_at_freeze<&ServerBench::leave>>>)),
 };
 
 }  // namespace
