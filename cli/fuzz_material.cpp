@@ -9,6 +9,7 @@
 #include <functional>
 #include <set>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -142,6 +143,10 @@ Outcome<Rig<Port>> open_fresh(const Wiring<Port>& wiring, const RigOptions& how)
   return Rig<Port>::open(wiring, how);
 }
 
+/// Who does not has said all that it has to say when it was last read.
+template <class Kind>
+constexpr bool kSpeaksUnasked = !std::is_same_v<typename Kind::Port, BusPort>;
+
 /// A target without models.
 template <class Kind>
 auto setup_of(const Device& device, const Kind& kind, const RigOptions& how, const Hand& hand,
@@ -151,7 +156,8 @@ auto setup_of(const Device& device, const Kind& kind, const RigOptions& how, con
       .make_model = {},
       .restart = {},
       .is_emulated = how.target.is_emulated(),
-      .how = {.touches_of = device.replay.touches_of, .trailing = trailing}};
+      .how = {.touches_of = device.replay.touches_of,
+              .trailing = kSpeaksUnasked<Kind> ? trailing : Duration{}}};
   if (how.target.is_emulated()) return setup;
   if (hand.has("restart")) {
     setup.restart = [hand] { return hand.set("restart", 1); };

@@ -94,6 +94,8 @@ class Bench {
   void set_hand(Hand hand) { hand_ = std::move(hand); }
   /// Whether a device whose program a case has ended or hung can be put right again.
   [[nodiscard]] virtual bool can_restart() { return true; }
+  /// Starts one that gives no sign of life again. False: nobody can, or it gives none then either.
+  [[nodiscard]] virtual bool revive() { return false; }
 
   /// Whether the device was stopped because nothing came from this process for a while, which a
   /// link that is held up does to it, too. It does not move any more until `resume`.

@@ -143,13 +143,11 @@ class Run {
     if (auto reason = reason_not_to_run(one)) return row_of(one, {*std::move(reason)});
     auto finding = run_repeatedly(one);
     auto& judgement = finding.judgement;
+    if (judgement.is_silence && !bench_.error() && !may_have_died_of(one) && !gives_sign()) {
+      finding = look_into_death(one, std::move(finding));
+    }
     if (bench_.error()) {
       judgement = {Verdict::kError, {}, std::string{describe(bench_.error()->code)}};
-      is_alive_ = false;
-    } else if (judgement.is_silence && !may_have_died_of(one) &&
-               !check_alive(fmt::format("after {}", name_of(one)))) {
-      // One that says other things is no matter of the rig.
-      if (bench_.judgement().verdict != Verdict::kFail) judgement.verdict = Verdict::kError;
       is_alive_ = false;
     } else if (judgement.verdict == Verdict::kFail && deviates_as_known(one)) {
       judgement.verdict = Verdict::kDeviation;
@@ -163,6 +161,41 @@ class Run {
       has_failed_ = true;
     }
     return row_of(one, std::move(finding));
+  }
+
+  /// A device that has fallen silent in a case: started again, it is asked again. One that nobody
+  /// can bring back may have been switched off.
+  Finding look_into_death(const Case& one, Finding finding) {
+    if (!revive(one)) return bury(one, std::move(finding));
+    const auto once = wording_of(finding.judgement);
+    finding = run_once(one, options_.profile);
+    auto& judgement = finding.judgement;
+    if (judgement.is_silence && !gives_sign()) {
+      if (!revive(one)) return bury(one, std::move(finding));
+      judgement.verdict = Verdict::kFail;
+      judgement.actual += ", twice, and no sign of life until it is started again";
+    } else if (!bench_.error()) {
+      judgement = {
+          Verdict::kInconclusive,
+          {},
+          fmt::format("once {}, and no sign of life until it was started again; then not", once)};
+    }
+    return finding;
+  }
+
+  Finding bury(const Case& one, Finding finding) {
+    is_alive_ = check_alive(fmt::format("after {}", name_of(one)));
+    // One that says other things is no matter of the rig.
+    const bool is_understood = bench_.judgement().verdict != Verdict::kFail;
+    if (!is_alive_ && is_understood) finding.judgement.verdict = Verdict::kError;
+    return finding;
+  }
+
+  /// What was out of reach may have been so because of that.
+  bool revive(const Case& one) {
+    out_of_reach_.erase(one.start);
+    bench_.begin(options_.profile, options_.seed);
+    return bench_.revive();
   }
 
   static Judgement skipped(std::string reason) {
@@ -473,14 +506,18 @@ class Run {
     if (options_.on_wait) options_.on_wait(what());
   }
 
-  bool check_alive(std::string_view when) {
+  bool gives_sign() {
     const bool is_alive = undisturbed(
         [this] {
           bench_.begin(options_.profile, options_.seed);
           return bench_.is_alive();
         },
         std::identity{});
-    if (is_alive || options_.must_stop()) return true;
+    return is_alive || options_.must_stop();
+  }
+
+  bool check_alive(std::string_view when) {
+    if (gives_sign()) return true;
     const auto& judgement = bench_.judgement();
     const bool is_understood = bench_.error() || judgement.verdict != Verdict::kFail;
     auto row = row_of_device("alive", is_understood ? Verdict::kError : Verdict::kFail);

@@ -425,6 +425,12 @@ bool ServerBench::can_restart() {
   return hand().has("restart") || port().touch("arm.fail.arm_open", 0);
 }
 
+bool ServerBench::revive() {
+  is_spoiled_ = can_restart();
+  is_missed_ = false;
+  return is_spoiled_ && is_alive();
+}
+
 void ServerBench::spoil() {
   if (is_deaf()) return;
   is_spoiled_ = can_restart();

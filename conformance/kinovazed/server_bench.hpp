@@ -61,6 +61,7 @@ class ServerBench final : public PortBench<SessionSource> {
 
   [[nodiscard]] bool is_alive() override;
   [[nodiscard]] bool can_restart() override;
+  [[nodiscard]] bool revive() override;
   void bring_to(std::size_t start) override;
   void measure_noise() override;
   [[nodiscard]] Instant now() const override;

@@ -200,6 +200,8 @@ bool NodeBench::is_alive() {
   return BusBench::read(subject_.address, 1).has_value() && !error();
 }
 
+bool NodeBench::revive() { return reach("power", 1) && is_alive(); }
+
 /// The first one that answers, unless one was found already.
 void NodeBench::find_node() {
   for (std::uint8_t node = 0; node <= kLastDocumentedNode && !is_found_ && !error(); ++node) {

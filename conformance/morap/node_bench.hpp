@@ -48,6 +48,7 @@ class NodeBench final : public BusBench {
   ~NodeBench() override;
 
   [[nodiscard]] bool is_alive() override;
+  [[nodiscard]] bool revive() override;
   void bring_to(std::size_t start) override;
   void measure_noise() override;
 

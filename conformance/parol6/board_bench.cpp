@@ -252,8 +252,17 @@ void BoardBench::spoil() {
 }
 
 void BoardBench::spoil_memory() {
-  if (rig().is_guarded() && !hand().has("power")) miss_hand("power");
+  if (!has_switch()) miss_hand("power");
   is_spoiled_ = is_spoiled_ || !is_over();
+}
+
+/// Of its power; each emulated one has it.
+bool BoardBench::has_switch() { return !rig().is_guarded() || hand().has("power"); }
+
+bool BoardBench::revive() {
+  if (!has_switch()) return false;
+  power_cycle();
+  return is_alive();
 }
 
 void BoardBench::power_cycle() {

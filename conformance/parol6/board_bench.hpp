@@ -52,6 +52,7 @@ class BoardBench final : public StreamBench {
   explicit BoardBench(Rig<StreamPort> rig);
 
   [[nodiscard]] bool is_alive() override;
+  [[nodiscard]] bool revive() override;
   void bring_to(std::size_t start) override;
   void measure_noise() override;
 
@@ -130,6 +131,7 @@ class BoardBench final : public StreamBench {
 
  private:
   [[nodiscard]] std::optional<Answer> next_answer(Instant asked, Duration within);
+  [[nodiscard]] bool has_switch();
   void power_cycle();
   void put_back_surroundings();
   void fail_to_understand();

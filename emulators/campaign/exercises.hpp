@@ -23,7 +23,7 @@ class Exercises {
   /// It, again and again; on a bus with something that was chosen before read after each.
   [[nodiscard]] Script some_copies(const Setting& setting) const;
   [[nodiscard]] Script many_copies(const Setting& setting) const;
-  /// With another last byte, which no checksum has.
+  /// With another last byte, which no checksum has; where there is none, on a stream only.
   [[nodiscard]] Script spoiled_copies(const Setting& setting) const;
   /// With each value of a checksum of one byte.
   [[nodiscard]] Script sums(const Setting& setting) const;
@@ -76,13 +76,13 @@ class Exercises {
   [[nodiscard]] std::vector<Script> told_sequences() const;
 
   // Of lines.
-  /// Each of its bytes wrong, or missing.
+  /// Each kind of line with each byte up to its first number wrong, or missing.
   [[nodiscard]] Script misspelt(const Setting& setting) const;
   /// Several in one piece, of which two are odd: by their ends, their case, or as nothing.
   [[nodiscard]] Script in_one_segment(const Setting& setting) const;
   /// Each kind of line with each kind of blank at each place where a piece of it begins or ends.
   [[nodiscard]] Script blanks(const Setting& setting) const;
-  /// Twice, in two segments of each size.
+  /// Twice, in two segments of each size, and in many small ones.
   [[nodiscard]] Script cut_across(const Setting& setting) const;
   /// By a client that leaves in the middle of it, before it comes from another one.
   [[nodiscard]] Script half_lines(const Setting& setting) const;
@@ -104,6 +104,8 @@ class Exercises {
   [[nodiscard]] Script with_bits(const Setting& setting, const Field& field,
                                  std::int64_t bits) const;
   [[nodiscard]] Script with_message(const Setting& setting, Bytes raw) const;
+  /// Whether its last byte is a checksum.
+  [[nodiscard]] bool has_sum(const Setting& setting) const;
   [[nodiscard]] bool can_be_watched(const Setting& setting) const;
   [[nodiscard]] bool strays(const Script& script) const;
   void add_watched(Script& body, const Script& odd) const;

@@ -128,7 +128,17 @@ Script Exercises::all_fields(const Setting& setting) const {
 
 Script Exercises::held_codes(const Setting& setting) const {
   constexpr std::size_t kTimes = 8;
+  constexpr int kTimesNamed = 4;
   Script body;
+  for (const auto& piece : setting.message.fields) {
+    const bool is_name = &piece == &setting.message.fields.front();
+    if (piece.place != Place::kPiece || is_name) continue;
+    for (const auto& named : piece.values) {
+      auto exchange = setting.exchange;
+      set_piece(piece, exchange.front().bytes, named.name);
+      for (int i = 0; i < kTimesNamed; ++i) add(body, exchange);
+    }
+  }
   const auto fields = free_fields(setting);
   std::size_t time = 0;
   for (const auto& held : fields) {
@@ -275,7 +285,7 @@ Script Exercises::variants(const Setting& setting) const {
   for (const auto& one : setting.variants) {
     auto other = setting;
     other.exchange = to(setting.exchange.front().id, one);
-    add_told(body, setting, other.exchange);
+    if (other.exchange != setting.exchange) add_told(body, setting, other.exchange);
     const auto dissector = material_.make_dissector();
     auto messages = messages_in(other.exchange.front(), *dissector);
     if (messages.size() != 1) continue;

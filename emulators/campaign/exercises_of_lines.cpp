@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "emulators/campaign/exercises.hpp"
+#include "harness/core/bytes.hpp"
 
 namespace armjig::campaign {
 namespace {
 
 bool is_control(std::byte byte) { return std::to_integer<unsigned>(byte) < ' '; }
+
+bool is_digit(std::byte byte) { return std::isdigit(std::to_integer<int>(byte)) != 0; }
 
 std::byte in_case(std::byte byte, bool is_upper) {
   const auto letter = std::to_integer<int>(byte);
@@ -43,9 +49,17 @@ Script Exercises::padded(const Setting& setting) const {
     add(body, sending(setting.exchange, with_inserted(line, end, blanks)));
   };
   for (std::size_t size = 1; size <= kMost; ++size) add_of_size(size);
-  for (const auto edge :
-       {std::size_t{256}, std::size_t{512}, std::size_t{1024}}) {  // with its end, and without
-    for (auto size = edge - 2; size <= edge + 3; ++size) add_of_size(size);
+  // With its end, and without. Whoever says too much may not be heard any more.
+  auto client = setting.exchange.front().id;
+  for (const auto edge : {256UL, 512UL, 1024UL, 2048UL}) {
+    for (auto size = edge - 2; size <= edge + 3; ++size) {
+      add_of_size(size);
+      body.back().id = client;
+      if (edge < 1024) continue;
+      add(body, border("disconnect", client, "client-close"));
+      add(body, border("connect", ++client, "ok"));
+      add(body, to(client, setting.exchange));
+    }
   }
   return body;
 }
@@ -55,17 +69,24 @@ Script Exercises::misspelt(const Setting& setting) const {
   constexpr std::byte kCase{0x20};
   Script body;
   if (material_.kind != LinkKind::kSession) return body;
-  const auto& line = setting.exchange.front().bytes;
-  const auto end = line.size() - size_of_end(line);
-  for (std::size_t i = 0; i < end; ++i) {
-    for (const auto odd : {kOther, line[i] ^ kCase}) {
-      auto other = line;
-      other[i] = odd;
-      add(body, sending(setting.exchange, std::move(other)));
+  std::set<std::string> tried;
+  for (const auto& kind : repertoire_.kinds()) {
+    const auto exchange = to(setting.exchange.front().id, kind.front().exchange);
+    const auto& line = exchange.front().bytes;
+    const auto end = line.size() - size_of_end(line);
+    const auto try_it = [&](std::vector<std::byte> other) {
+      if (tried.emplace(as_text(other)).second) add(body, sending(exchange, std::move(other)));
+    };
+    for (std::size_t i = 0; i < end && !is_digit(line[i]); ++i) {
+      for (const auto odd : {kOther, line[i] ^ kCase}) {
+        auto other = line;
+        other[i] = odd;
+        try_it(std::move(other));
+      }
+      auto shorter = line;
+      shorter.erase(shorter.begin() + static_cast<std::ptrdiff_t>(i));
+      try_it(std::move(shorter));
     }
-    auto shorter = line;
-    shorter.erase(shorter.begin() + static_cast<std::ptrdiff_t>(i));
-    add(body, sending(setting.exchange, std::move(shorter)));
   }
   return body;
 }
@@ -129,6 +150,14 @@ Script Exercises::cut_across(const Setting& setting) const {
     const auto border = twice.begin() + static_cast<std::ptrdiff_t>(size);
     add(body, sending(setting.exchange.front(), {twice.begin(), border}));
     add(body, sending(setting.exchange.front(), {border, twice.end()}));
+  }
+  constexpr std::ptrdiff_t kLongestPiece = 5;
+  for (std::ptrdiff_t size = 1; size <= kLongestPiece; ++size) {
+    for (auto begin = twice.begin(); begin != twice.end();) {
+      const auto end = begin + std::min(size, twice.end() - begin);
+      add(body, sending(setting.exchange.front(), {begin, end}));
+      begin = end;
+    }
   }
   return body;
 }

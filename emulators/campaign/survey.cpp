@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "emulators/campaign/course.hpp"
 #include "emulators/campaign/tour.hpp"
 
 namespace armjig::campaign {
@@ -19,7 +20,6 @@ using namespace std::chrono_literals;
 /// Lines that come no faster do not wait for a server that reads every 10 ms: a client that leaves
 /// meanwhile may or may not have its answers.
 constexpr Duration kTick = 12ms;
-constexpr Duration kShort = 1000ms;
 
 /// Whether the names are the same but for a number, as of `speed.j1` and `speed.j2`.
 bool are_of_a_row(const Field& one, const Field& other) {
@@ -57,36 +57,51 @@ void Survey::plan() {
   of_first({&Exercises::sequences, &Exercises::bursts, &Exercises::after_runs, &Exercises::padded,
             &Exercises::odd_ends, &Exercises::marked, &Exercises::in_one_segment});
   of_one(&Exercises::odd_numbers);
-  of_first({&Exercises::blanks, &Exercises::cut_across, &Exercises::half_lines});
+  of_first(
+      {&Exercises::blanks, &Exercises::cut_across, &Exercises::half_lines, &Exercises::misspelt});
   of_all(0,
          {&Exercises::all_fields, &Exercises::variants, &Exercises::reads_again, &Exercises::sums});
-  of_one(&Exercises::held_codes);
+  if (material_.kind == LinkKind::kSession) {
+    of_all(0, {&Exercises::held_codes});
+  } else {
+    of_one(&Exercises::held_codes);
+  }
   of_one(&Exercises::false_lengths);
   of_first({&Exercises::all_codes, &Exercises::two_codes});
   if (!repertoire_.kinds().empty()) {
     plan_all(repertoire_.kinds().front().front(), exercises_.told_sequences());
   }
+  plan_courses();
   of_all(0, {&Exercises::watched_pairs});
   const auto many_at_once = cases_.size();
   of_all(0, {&Exercises::watched_lengths, &Exercises::pairs, &Exercises::half_lines,
-             &Exercises::misspelt, &Exercises::mixed_pairs, &Exercises::cut_copies,
-             &Exercises::sweep});
+             &Exercises::mixed_pairs, &Exercises::cut_copies, &Exercises::sweep});
   const auto idle_ones = plan_values(0, &Exercises::values);
   of_all(0, {&Exercises::lengths, &Exercises::odd_bytes});
   for (const auto& one : repertoire_.looks()) {
-    cases_.emplace_back([this, &one] { return whole({}, many_copies_of(one)); });
+    cases_.push_back({[this, &one] { return whole({}, many_copies_of(one)); }});
   }
   const auto watched_idle_ones = plan_values(0, &Exercises::watched_values);
   of_first({&Exercises::long_gap});
   const auto other_idle_ones = plan_values(1, &Exercises::values);
   of_all(1, {&Exercises::some_copies, &Exercises::pairs});
-  of_all(0, {&Exercises::sizes});
+  of_all(0, {&Exercises::sizes, &Exercises::many_copies, &Exercises::long_gap});
+  put_short_ones_first(many_at_once);
+  auto tours = tour_cases();
+  cases_.insert(cases_.begin() + static_cast<std::ptrdiff_t>(many_at_once),
+                std::make_move_iterator(tours.begin()), std::make_move_iterator(tours.end()));
+  const auto idle = cases_.size();
   for (const auto* const late : {&idle_ones, &other_idle_ones, &watched_idle_ones}) {
     cases_.insert(cases_.end(), late->begin(), late->end());
   }
-  of_all(0, {&Exercises::many_copies, &Exercises::long_gap});
-  put_short_ones_first(many_at_once);
-  put_after_short_ones(tour_cases(), many_at_once);
+  put_short_ones_first(idle);
+}
+
+void Survey::plan_courses() {
+  const Courses courses{material_, repertoire_};
+  for (auto& one : courses.steered()) {
+    cases_.push_back({[one = std::move(one)] { return one; }});
+  }
 }
 
 /// Single messages in each state, then in the middle of what they began; and more of what is
@@ -97,7 +112,7 @@ std::vector<Survey::Case> Survey::tour_cases() {
   const auto add_parts = [&] {
     const auto longest = material_.longest_tour;
     for (auto part = tour.next(longest); !part.empty(); part = tour.next(longest)) {
-      cases.emplace_back([part] { return part; });
+      cases.push_back({[part] { return part; }});
     }
   };
   add_parts();
@@ -117,7 +132,7 @@ std::vector<Survey::Case> Survey::tour_cases() {
 void Survey::plan_all(const Setting& setting, const std::vector<Script>& bodies) {
   Script part;
   const auto add_part = [&] {
-    if (!part.empty()) cases_.emplace_back([this, &setting, part] { return whole(setting, part); });
+    if (!part.empty()) cases_.push_back({[this, setting, part] { return whole(setting, part); }});
     part.clear();
   };
   for (const auto& body : bodies) {
@@ -128,20 +143,20 @@ void Survey::plan_all(const Setting& setting, const std::vector<Script>& bodies)
   add_part();
 }
 
-/// What takes long and is found by nothing else.
-void Survey::put_after_short_ones(std::vector<Case> cases, std::size_t begin) {
-  const auto from = cases_.begin() + static_cast<std::ptrdiff_t>(begin);
-  const auto is_long = [](const Case& one) { return length_of(one()) > kShort; };
-  cases_.insert(std::find_if(from, cases_.end(), is_long), std::make_move_iterator(cases.begin()),
-                std::make_move_iterator(cases.end()));
-}
-
-/// From that place on: in the time of a long one several short ones tell more.
+/// From that place on: in the time of a long one several short ones tell more, but for messages of
+/// many fields, of which more can be wrong.
 void Survey::put_short_ones_first(std::size_t begin) {
-  constexpr std::array<Duration, 4> kClasses{500ms, kShort, 2000ms, 4000ms};
+  constexpr std::array<Duration, 4> kClasses{500ms, 1000ms, 2000ms, 4000ms};
+  constexpr std::size_t kManyFields = 4;
+  const auto fields_of = [](const auto& kind) { return kind.front().message.fields.size(); };
+  const auto fewest = repertoire_.kinds().empty()
+                          ? 0
+                          : fields_of(std::ranges::min(repertoire_.kinds(), {}, fields_of));
   std::vector<std::pair<std::ptrdiff_t, Case>> ranked;
   for (auto i = begin; i < cases_.size(); ++i) {
-    const auto place = std::ranges::lower_bound(kClasses, length_of(cases_[i]()));
+    const auto more = std::max(cases_[i].fields, fewest) - fewest;
+    const auto length = length_of(cases_[i].script()) * kManyFields / (kManyFields + more);
+    const auto place = std::ranges::lower_bound(kClasses, length);
     ranked.emplace_back(place - kClasses.begin(), std::move(cases_[i]));
   }
   std::ranges::stable_sort(ranked, {}, [](const auto& one) { return one.first; });
@@ -160,7 +175,9 @@ std::optional<Survey::Case> Survey::case_of(const Setting& setting, Exercise exe
   auto body = (exercises_.*exercise)(setting);
   if (material_.permit) material_.permit(body);
   if (body.empty()) return std::nullopt;
-  return [this, &setting, exercise] { return whole(setting, (exercises_.*exercise)(setting)); };
+  return Case{
+      [this, &setting, exercise] { return whole(setting, (exercises_.*exercise)(setting)); },
+      setting.message.fields.size()};
 }
 
 /// `of_field` of a field of each kind, then of another of each. Those that change nothing are for
@@ -181,9 +198,10 @@ std::vector<Survey::Case> Survey::plan_values(std::size_t state, OfField of_fiel
       if (material_.permit) material_.permit(body);
       if (body.empty()) continue;
       auto& cases = matters_first(setting, field) ? cases_ : idle_ones;
-      cases.emplace_back([this, &setting, &field, of_field] {
-        return whole(setting, (exercises_.*of_field)(setting, field));
-      });
+      cases.push_back({[this, &setting, &field, of_field] {
+                         return whole(setting, (exercises_.*of_field)(setting, field));
+                       },
+                       setting.message.fields.size()});
     }
   }
   return idle_ones;

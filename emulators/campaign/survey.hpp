@@ -27,14 +27,18 @@ class Survey {
   ~Survey() = default;
 
   [[nodiscard]] std::size_t size() const noexcept { return cases_.size(); }
-  [[nodiscard]] Script at(std::size_t number) const { return cases_[number](); }
+  [[nodiscard]] Script at(std::size_t number) const { return cases_[number].script(); }
 
  private:
   using Exercise = Script (Exercises::*)(const Setting& setting) const;
   using OfField = Script (Exercises::*)(const Setting& setting, const Field& field) const;
-  using Case = std::function<Script()>;
+  struct Case {
+    std::function<Script()> script;
+    std::size_t fields = 0;  ///< of the message that it is about
+  };
 
   void plan();
+  void plan_courses();
   void plan_all(const Setting& setting, const std::vector<Script>& bodies);
   void put_short_ones_first(std::size_t begin);
   bool plan(const Setting& setting, Exercise exercise);
@@ -42,7 +46,6 @@ class Survey {
   [[nodiscard]] std::optional<Case> case_of(const Setting& setting, Exercise exercise) const;
   [[nodiscard]] std::vector<Case> plan_values(std::size_t state, OfField of_field);
   [[nodiscard]] std::vector<Case> tour_cases();
-  void put_after_short_ones(std::vector<Case> cases, std::size_t begin);
   [[nodiscard]] bool matters_first(const Setting& setting, const Field& field);
   [[nodiscard]] bool matters(const Setting& setting, const Field& field);
   [[nodiscard]] Script whole(const Setting& setting, const Script& body) const;

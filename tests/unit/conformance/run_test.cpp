@@ -23,6 +23,11 @@ class NumberBench final : public Bench {
     return !is_dead && !is_gibberish;
   }
   bool can_restart() override { return !has_nobody; }
+  bool revive() override {
+    if (revivals_left-- <= 0) return false;
+    is_dead = false;
+    return true;
+  }
   void bring_to(std::size_t start) override {
     visited.push_back(start);
     if (stops_in_start-- > 0) {
@@ -54,6 +59,8 @@ class NumberBench final : public Bench {
   int late_answers = 0;  ///< of the next ones
   bool is_dead = false;
   bool has_nobody = false;  ///< who could start it again
+  int revivals_left = 0;    ///< so many times one that is dead can be brought back
+  int deaths_left = 2;      ///< in the case that it dies of
   bool is_gibberish = false;
   bool leaves_beyond_open = false;
   bool obeys_firmware = true;
@@ -117,6 +124,7 @@ void races(Bench& bench) {
   device.expect_true(device.late_answers-- <= 0, "a word", "another one");
 }
 void dies(Bench& bench) {
+  if (number(bench).deaths_left-- <= 0) return;
   number(bench).is_dead = true;
   bench.fail_by_silence("an answer", "silence");
 }
@@ -470,6 +478,32 @@ TEST(ConformanceRun, AnswersThatAreNotUnderstoodAreAFinding) {
 TEST(ConformanceRun, TellsATargetThatDiedFromOneThatFails) {
   EXPECT_THAT(verdicts(run("n.quiet")), ElementsAre("n.quiet fail")) << "it answers afterwards";
   EXPECT_THAT(verdicts(run("n.d")), ElementsAre("n.alive error", "n.dies error"));
+}
+
+TEST(ConformanceRun, WhoeverDiesOfACaseTwiceHasFailedItAndIsBroughtBack) {
+  NumberBench bench;
+  bench.revivals_left = 2;
+  const auto report = run(bench, "n.");
+  EXPECT_THAT(verdicts(report), testing::Contains("n.dies fail"));
+  EXPECT_THAT(verdicts(report), testing::Not(testing::Contains("n.alive error")));
+  EXPECT_THAT(verdicts(report), testing::Contains("n.link error")) << "it goes on";
+  const auto row = std::ranges::find(report.rows, "n.dies", &ReportRow::name);
+  EXPECT_THAT(row->actual, HasSubstr("silence, twice"));
+}
+
+TEST(ConformanceRun, WhoeverDiesOfACaseOnceMayHaveBeenSwitchedOff) {
+  NumberBench bench;
+  bench.revivals_left = 2;
+  bench.deaths_left = 1;
+  const auto report = run(bench, "n.d");
+  EXPECT_THAT(verdicts(report), testing::Contains("n.dies inconclusive"));
+  EXPECT_THAT(report.rows[0].actual, HasSubstr("once"));
+}
+
+TEST(ConformanceRun, WhoeverCannotBeBroughtBackTwiceIsGone) {
+  NumberBench bench;
+  bench.revivals_left = 1;
+  EXPECT_THAT(verdicts(run(bench, "n.dies")), ElementsAre("n.alive error", "n.dies error"));
 }
 
 TEST(ConformanceRun, RunsNothingMoreOnceTheTargetIsGone) {

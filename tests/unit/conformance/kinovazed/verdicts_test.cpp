@@ -11,10 +11,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "conformance/kinovazed/suite.hpp"
 #include "conformance/run.hpp"
+#include "harness/core/bytes.hpp"
 #include "harness/link/port_around.hpp"
 #include "tests/unit/support/devices.hpp"
 
@@ -67,6 +69,52 @@ class ChangedServer final : public SourceAround {
                        return std::make_unique<ChangedSession>(std::move(port), change, sent);
                      }} {}
   bool touch(std::string_view /*input*/, std::int64_t /*value*/) override { return false; }
+};
+
+/// A connection to a server that one line ends.
+class MortalSession final : public SessionAround {
+ public:
+  MortalSession(std::unique_ptr<SessionPort> port, std::shared_ptr<bool> is_dead)
+      : PortAround{std::move(port)}, is_dead_{std::move(is_dead)} {}
+
+  Result<void> connect(Instant deadline) override {
+    if (*is_dead_) return tl::unexpected{Error{ErrorCode::kRefused, 0}};
+    return inner().connect(deadline);
+  }
+  Result<void> send(Bytes segment) override {
+    *is_dead_ = *is_dead_ || as_text(segment).find("PlaceBottle") != std::string_view::npos;
+    return inner().send(segment);
+  }
+  Result<Received> receive(std::span<std::byte> into, Instant deadline) override {
+    if (*is_dead_) return tl::unexpected{Error{ErrorCode::kDisconnected, 0}};
+    return inner().receive(into, deadline);
+  }
+  void half_close() override { inner().half_close(); }
+  void close() override { inner().close(); }
+  void reset() override { inner().reset(); }
+
+ private:
+  std::shared_ptr<bool> is_dead_;
+};
+
+/// Only its restart brings it back.
+class MortalServer final : public SourceAround {
+ public:
+  explicit MortalServer(std::shared_ptr<bool> is_dead)
+      : SourceAround{test::wiring<cli::OnServer>("kinovazed")
+                         .open_emulated(parse_target("emulated:").value())
+                         .value(),
+                     [is_dead](std::unique_ptr<SessionPort> port) {
+                       return std::make_unique<MortalSession>(std::move(port), is_dead);
+                     }},
+        is_dead_{std::move(is_dead)} {}
+  bool touch(std::string_view input, std::int64_t value) override {
+    if (input == "restart") *is_dead_ = false;
+    return SourceAround::touch(input, value);
+  }
+
+ private:
+  std::shared_ptr<bool> is_dead_;
 };
 
 std::string unchanged(char c) { return std::string{c}; }
@@ -239,6 +287,24 @@ TEST(ServerVerdicts, AServerThatBeatsOnAndDoesNotAnswerIsAFinding) {
                                     }))
         << life.count() << " ns";
   }
+}
+
+TEST(ServerVerdicts, AServerThatALineEndsHasFailedThatCaseAndIsAskedTheOthers) {
+  const auto bench =
+      make_bench(Rig<SessionSource>{std::make_unique<MortalServer>(std::make_shared<bool>(false))},
+                 {.permissions = Permissions::all()});
+  RunOptions options;
+  options.selection.filter = "kinovazed.state";
+  options.selection.tier = Tier::kQuick;
+  options.permissions = Permissions::all();
+  const auto report = run_suite(suite(), **bench, options, [](const ReportRow&) {});
+  EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
+  EXPECT_EQ(report.count(Verdict::kError), 0U);
+  EXPECT_GT(report.count(Verdict::kPass), 20U);
+  const auto table = std::ranges::find(report.rows, "kinovazed.state.table", &ReportRow::name);
+  ASSERT_NE(table, report.rows.end());
+  EXPECT_EQ(table->verdict, Verdict::kFail);
+  EXPECT_THAT(table->actual, HasSubstr("the end of the connection, twice"));
 }
 
 TEST(OnlyLooking, SendsNothingToAnArmThatIsInUse) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/campaign/exercises.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -163,6 +164,21 @@ TEST(Exercises, HoldEachModeOfTheGripperWithOtherNumbersEachTime) {
   EXPECT_GE(on_end, 6U);
 }
 
+TEST(Exercises, SayEachNameThatALineMayHaveSomeTimesOnEnd) {
+  const auto lines = lines_in(server().exercises().held_codes(server().setting("SetJoystickMode")));
+  for (const auto* const mode : {"NoMode", "XYZ"}) {
+    const auto line = fmt::format("SetJoystickMode:{}\r\n", mode);
+    EXPECT_FALSE(std::ranges::search_n(lines, 4, line).empty()) << line;
+  }
+}
+
+TEST(Exercises, SpoilALastByteWhereItIsAChecksumOrEndsAFrame) {
+  EXPECT_FALSE(node().exercises().spoiled_copies(node().setting("program")).empty());
+  EXPECT_TRUE(node().exercises().spoiled_copies(node().setting("speed")).empty());
+  EXPECT_FALSE(board().exercises().spoiled_copies(board().setting("command idle")).empty());
+  EXPECT_TRUE(server().exercises().spoiled_copies(server().setting("EStop")).empty());
+}
+
 TEST(Exercises, GiveEachLengthAndAsManyBytes) {
   constexpr std::size_t kLength = 3;
   std::array<std::size_t, 256> after{};  // each of them, but for those next to the true one
@@ -218,6 +234,17 @@ TEST(Exercises, CutTwoLinesAtEachPlace) {
   for (const Lines& cut : {Lines{"EStop\r", "\nEStop\r\n"}, Lines{"EStop\r\nE", "Stop\r\n"}}) {
     EXPECT_FALSE(std::ranges::search(lines, cut).empty());
   }
+  const Lines pieces{"ESt", "op\r", "\nES", "top", "\r\n"};
+  EXPECT_FALSE(std::ranges::search(lines, pieces).empty());
+}
+
+TEST(Exercises, ComeAgainAfterALineThatIsFarTooLong) {
+  const auto script = server().exercises().padded(server().setting("EStop"));
+  const auto is_long = [](const KeptRecord& one) { return one.bytes.size() > 2000; };
+  const auto longest = std::ranges::find_if(script, is_long);
+  ASSERT_GT(script.end() - longest, 3);
+  EXPECT_EQ(lines_in({longest[3]}), Lines{"EStop\r\n"});
+  EXPECT_EQ(longest[3].id, longest->id + 1) << "a new client";
 }
 
 TEST(Exercises, WriteLinesThatAreTooLongAndNearlyRight) {
@@ -226,8 +253,11 @@ TEST(Exercises, WriteLinesThatAreTooLongAndNearlyRight) {
   EXPECT_TRUE(has(padded, "EStop" + std::string(35, ' ') + "\r\n"));
   EXPECT_TRUE(has(padded, "EStop" + std::string(251, ' ') + "\r\n"));
   const auto misspelt = lines_in(server().exercises().misspelt(setting));
-  for (const auto* const line : {"EStoX\r\n", "EstOp\r\n", "ESto\r\n"}) {
-    EXPECT_EQ(has(misspelt, line), std::string_view{line} != "EstOp\r\n") << line;
+  for (const auto* const line :
+       {"EStoX\r\n", "EstOp\r\n", "ESto\r\n", "Retrac\r\n", "sunObjective:"}) {
+    const auto is_it = [&](const std::string& one) { return one.starts_with(line); };
+    const bool is_one_letter_wrong = std::string_view{line} != "EstOp\r\n" && *line != 's';
+    EXPECT_EQ(std::ranges::any_of(misspelt, is_it), is_one_letter_wrong) << line;
   }
   EXPECT_TRUE(has(lines_in(server().exercises().odd_ends(setting)), "EStop: \r\n"));
   std::string ends;

@@ -13,6 +13,7 @@
 #include "emulators/sessions/sessions.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 #include "harness/wire/parol6/frame.hpp"
+#include "tests/unit/emulators/campaign/live_material.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -194,6 +195,33 @@ TEST(Survey, TriesWhatMattersBeforeWhatDoesNot) {
     });
   };
   EXPECT_LT(first_with(4) - scripts.begin(), first_with(0) - scripts.begin());
+}
+
+TEST(Survey, LeadsAServerThroughItsStatesBeforeItTriesWhatTellsLittle) {
+  const auto material = live_material("kinovazed", "tcp:127.0.0.1:1");
+  const Survey survey{material, 1};
+  std::size_t first_tour = 0;
+  while (length_of(survey.at(first_tour)) <= material.longest + 2s) ++first_tour;
+  Duration before{};
+  for (std::size_t i = 0; i < first_tour; ++i) before += length_of(survey.at(i));
+  EXPECT_LT(before, 100s);
+}
+
+TEST(Survey, TriesEachLengthOfASetOfParametersInTheTimeOfShorterMessages) {
+  const auto material = live_material("morap", "i2c:/dev/nowhere");
+  const Survey survey{material, 1};
+  const auto sizes_in = [&](std::size_t number) {
+    std::set<std::size_t> sizes;
+    for (const auto& record : survey.at(number)) sizes.insert(record.bytes.size());
+    return sizes.size();
+  };
+  Duration before{};
+  std::size_t number = 0;
+  for (; number < survey.size() && sizes_in(number) <= 30; ++number) {
+    before += length_of(survey.at(number));
+  }
+  EXPECT_LT(number, survey.size());
+  EXPECT_LT(before, 200s);
 }
 
 /// Commands that come again and again for longer than rules let answers be late, and what came
