@@ -28,7 +28,7 @@ void add_held(Script& body, const Script& exchange, int times, Duration time) {
 
 Courses::Courses(const Material& material, const Repertoire& repertoire) : material_{material} {
   if (material.kind != LinkKind::kStream || material.strays == nullptr) return;
-  if (!material.rehearse || !material.permit_case) return;
+  if (!material.rehearse || !material.permit_case || !material.can_be_reset) return;
   for (const auto& kind : repertoire.kinds()) {
     const auto& setting = kind.front();
     const bool strays = material.strays(setting.exchange.front().bytes);
@@ -95,7 +95,7 @@ std::optional<Script> Courses::to_its_end(const Setting& deed, const Setting& ot
       later = joined(std::move(later), material_.harmless, 1s);
       is_over = told_after(later) == told;
     }
-    if (is_over) return joined(begun, material_.harmless, time * 5 / 4);
+    if (is_over) return joined(begun, material_.harmless, time * 3 / 2);
   }
   return std::nullopt;
 }
@@ -119,6 +119,7 @@ Script Courses::with(const Wheel& wheel, const Told& numbers) const {
       set_field_value(field, exchange.front().bytes, number->second);
     }
   }
+  seal(material_, exchange.front());
   return exchange;
 }
 

@@ -13,7 +13,7 @@ namespace armjig::campaign {
 
 /// On a stream: what a deed begins that takes its time and goes by where the device really is, as
 /// homing does, and what the guard lets pass only after it. Nothing where nobody knows what a sound
-/// device says.
+/// device says, or where a device is that nobody can make new: how long it takes depends on that.
 class Courses {
  public:
   /// Of the messages of such deeds. Both outlive this.
@@ -37,8 +37,8 @@ class Courses {
   [[nodiscard]] Told told_after(const Script& script) const;
   /// Empty: it does not open that.
   [[nodiscard]] Script steered(const Setting& closed, const Setting& deed) const;
-  /// The deed and the other right after it, until the device tells nothing new; none: it goes on
-  /// and on.
+  /// The deed and the other right after it, for half as long again as it takes until the device
+  /// tells nothing new; none: it goes on and on.
   [[nodiscard]] std::optional<Script> to_its_end(const Setting& deed, const Setting& other) const;
   [[nodiscard]] Script permitted(Script script) const;
   [[nodiscard]] bool is_permitted_after(const Script& before, const Script& exchange) const;

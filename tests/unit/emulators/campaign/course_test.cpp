@@ -105,6 +105,13 @@ TEST(Courses, SendEachOtherCommandBetweenLegs) {
   }
 }
 
+TEST(Courses, AreNoneOnABoardThatMayStandAnywhere) {
+  auto material = live_board();
+  material.can_be_reset = false;
+  const Repertoire repertoire{live_board(), 1};
+  EXPECT_TRUE(Courses(material, repertoire).steered().empty());
+}
+
 TEST(Courses, AreNoneWhereNobodyKnowsWhatASoundDeviceSaysOrMessagesTellAll) {
   auto material = live_board();
   material.rehearse = {};
