@@ -97,10 +97,11 @@ class Campaign {
     if (auto begun = begin(); !begun) return begun;
     const auto end = options_.first_case + options_.most_cases;
     for (auto number = options_.first_case; number < end && !options_.must_stop(); ++number) {
-      if (stage_.can_reset() && history_.size() >= options_.cases_between_resets) {
+      const auto script = script_of(number);
+      if (stage_.can_reset() && begins_anew(script)) {
         if (auto begun = start_again(); !begun) return begun;
       }
-      if (auto done = play_case(number); !done) return done;
+      if (auto done = play_case(script, number); !done) return done;
       state_.passed = passed_before_ + since_begin();
       if (listener_.on_case) listener_.on_case(state_);
       if (options_.stops_at_first && has_news()) return {};
@@ -113,6 +114,13 @@ class Campaign {
     BothHeard heard;
     std::optional<Symptom> symptom;
   };
+
+  /// What takes so long goes through states, from where a new device is.
+  [[nodiscard]] bool begins_anew(const Script& script) const {
+    const bool is_first = history_.empty();
+    return history_.size() >= options_.cases_between_resets ||
+           (!is_first && length_of(script) > 2 * material_.longest);
+  }
 
   [[nodiscard]] bool has_news() const {
     return std::ranges::any_of(state_.findings,
@@ -206,8 +214,7 @@ class Campaign {
     return script;
   }
 
-  [[nodiscard]] Outcome<void> play_case(std::uint64_t number) {
-    const auto script = script_of(number);
+  [[nodiscard]] Outcome<void> play_case(const Script& script, std::uint64_t number) {
     auto seen = see(script);
     ++state_.cases;
     if (!seen) {

@@ -14,6 +14,7 @@
 #include "cli/devices/devices.hpp"
 #include "cli/fuzz_material.hpp"
 #include "emulators/campaign/folder.hpp"
+#include "tests/unit/emulators/campaign/live_material.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -386,6 +387,45 @@ TEST(Campaign, PlaysAgainNoMoreThanTheLastCases) {
   const auto with_history = stage.lengths.at(OnceSilentStage::kSilent + 1);
   EXPECT_GT(with_history, last_cases(2));
   EXPECT_LT(with_history, last_cases(10));
+}
+
+/// Notes of each script how long it is, and whether the device is as new.
+class NotingStage final : public Stage {
+ public:
+  explicit NotingStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
+  Outcome<void> reset() override {
+    is_new_ = true;
+    return stage_->reset();
+  }
+  [[nodiscard]] bool can_reset() const override { return true; }
+  Outcome<void> renew_models() override { return stage_->renew_models(); }
+  Outcome<BothHeard> play(const Script& script) override {
+    played.emplace_back(length_of(script), std::exchange(is_new_, false));
+    return stage_->play(script);
+  }
+
+  std::vector<std::pair<Duration, bool>> played;
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  bool is_new_ = false;
+};
+
+TEST(Campaign, PlaysWhatGoesThroughStatesToADeviceThatIsAsNew) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  const auto material = live_material("parol6", "pty:/tmp/nowhere");
+  const auto model = emulated("?profile=firmware");
+  NotingStage stage{cli::stage_of(device, model, device, model, Hand{}, 20ms)};
+  CampaignState state;
+  const CampaignOptions options{.most_cases = 50,
+                                .judging = {device.make_dissector, material.rules, 20ms},
+                                .cases_between_resets = 1000,
+                                .begins_with_survey = true};
+  ASSERT_TRUE(run_campaign(stage, material, options, state, {}));
+  const auto longest = std::ranges::max(stage.played);
+  EXPECT_GT(longest.first, 40s);
+  EXPECT_TRUE(longest.second);
+  EXPECT_EQ(std::ranges::count_if(stage.played, &std::pair<Duration, bool>::second), 2);
 }
 
 /// Its target never answers.
