@@ -263,7 +263,6 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   const auto hand = hand_of(run.options.hands);
   auto stage =
       stage_of(run.device, how, run.device, run.model, hand, kHorizon + 2 * rules->time_tolerance);
-  material->can_be_reset = stage->can_reset();
   const auto options = campaign_options(run, state, *std::move(rules), must_stop);
   Account account{folder, causes_of(state.findings).size()};
   const auto done = run_campaign(*stage, *material, options, state, account.listener());

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <utility>
 
-#include "emulators/campaign/course.hpp"
 #include "emulators/campaign/tour.hpp"
 
 namespace armjig::campaign {
@@ -71,7 +70,6 @@ void Survey::plan() {
   if (!repertoire_.kinds().empty()) {
     plan_all(repertoire_.kinds().front().front(), exercises_.told_sequences());
   }
-  plan_courses();
   of_all(0, {&Exercises::watched_pairs});
   const auto many_at_once = cases_.size();
   of_all(0, {&Exercises::watched_lengths, &Exercises::pairs, &Exercises::half_lines,
@@ -95,13 +93,6 @@ void Survey::plan() {
     cases_.insert(cases_.end(), late->begin(), late->end());
   }
   put_short_ones_first(idle);
-}
-
-void Survey::plan_courses() {
-  const Courses courses{material_, repertoire_};
-  for (auto& one : courses.steered()) {
-    cases_.push_back({[one = std::move(one)] { return one; }});
-  }
 }
 
 /// Single messages in each state, then in the middle of what they began; and more of what is

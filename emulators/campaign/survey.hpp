@@ -38,7 +38,6 @@ class Survey {
   };
 
   void plan();
-  void plan_courses();
   void plan_all(const Setting& setting, const std::vector<Script>& bodies);
   void put_short_ones_first(std::size_t begin);
   bool plan(const Setting& setting, Exercise exercise);

@@ -412,20 +412,22 @@ class NotingStage final : public Stage {
 };
 
 TEST(Campaign, PlaysWhatGoesThroughStatesToADeviceThatIsAsNew) {
-  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
-  const auto material = live_material("parol6", "pty:/tmp/nowhere");
+  const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
+  const auto material = live_material("kinovazed", "tcp:127.0.0.1:1");
   const auto model = emulated("?profile=firmware");
-  NotingStage stage{cli::stage_of(device, model, device, model, Hand{}, 20ms)};
+  NotingStage stage{cli::stage_of(device, model, device, model, Hand{}, 220ms)};
   CampaignState state;
-  const CampaignOptions options{.most_cases = 50,
-                                .judging = {device.make_dissector, material.rules, 20ms},
+  const CampaignOptions options{.most_cases = 40,
+                                .judging = {device.make_dissector, material.rules, 220ms},
                                 .cases_between_resets = 1000,
                                 .begins_with_survey = true};
   ASSERT_TRUE(run_campaign(stage, material, options, state, {}));
-  const auto longest = std::ranges::max(stage.played);
-  EXPECT_GT(longest.first, 40s);
-  EXPECT_TRUE(longest.second);
-  EXPECT_EQ(std::ranges::count_if(stage.played, &std::pair<Duration, bool>::second), 2);
+  EXPECT_GT(std::ranges::max(stage.played).first, 20s);
+  for (std::size_t i = 1; i < stage.played.size(); ++i) {
+    const auto [length, is_new] = stage.played[i];
+    const bool is_near = length > 16s && length < 17s;
+    EXPECT_TRUE(is_near || is_new == (length > 16s)) << i;
+  }
 }
 
 /// Its target never answers.
