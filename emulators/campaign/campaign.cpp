@@ -117,9 +117,9 @@ class Campaign {
 
   /// What takes so long goes through states, from where a new device is.
   [[nodiscard]] bool begins_anew(const Script& script) const {
-    const bool is_first = history_.empty();
-    return history_.size() >= options_.cases_between_resets ||
-           (!is_first && length_of(script) > 2 * material_.longest);
+    const auto before = history_.size();
+    return before >= options_.cases_between_resets ||
+           (before > 0 && length_of(script) > 2 * material_.longest);
   }
 
   [[nodiscard]] bool has_news() const {

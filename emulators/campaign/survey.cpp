@@ -6,6 +6,7 @@
 #include <chrono>
 #include <initializer_list>
 #include <iterator>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -123,7 +124,7 @@ std::vector<Survey::Case> Survey::tour_cases() {
 void Survey::plan_all(const Setting& setting, const std::vector<Script>& bodies) {
   Script part;
   const auto add_part = [&] {
-    if (!part.empty()) cases_.push_back({[this, setting, part] { return whole(setting, part); }});
+    if (!part.empty()) cases_.push_back({[this, &setting, part] { return whole(setting, part); }});
     part.clear();
   };
   for (const auto& body : bodies) {
@@ -139,13 +140,13 @@ void Survey::plan_all(const Setting& setting, const std::vector<Script>& bodies)
 void Survey::put_short_ones_first(std::size_t begin) {
   constexpr std::array<Duration, 4> kClasses{500ms, 1000ms, 2000ms, 4000ms};
   constexpr std::size_t kManyFields = 4;
-  const auto fields_of = [](const auto& kind) { return kind.front().message.fields.size(); };
-  const auto fewest = repertoire_.kinds().empty()
-                          ? 0
-                          : fields_of(std::ranges::min(repertoire_.kinds(), {}, fields_of));
+  auto fewest = std::numeric_limits<std::size_t>::max();
+  for (const auto& kind : repertoire_.kinds()) {
+    fewest = std::min(fewest, kind.front().message.fields.size());
+  }
   std::vector<std::pair<std::ptrdiff_t, Case>> ranked;
   for (auto i = begin; i < cases_.size(); ++i) {
-    const auto more = std::max(cases_[i].fields, fewest) - fewest;
+    const auto more = cases_[i].fields - std::min(cases_[i].fields, fewest);
     const auto length = length_of(cases_[i].script()) * kManyFields / (kManyFields + more);
     const auto place = std::ranges::lower_bound(kClasses, length);
     ranked.emplace_back(place - kClasses.begin(), std::move(cases_[i]));
