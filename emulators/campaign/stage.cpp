@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <functional>
 #include <thread>
 #include <utility>
 
@@ -104,28 +105,34 @@ constexpr std::array<Guess, 6> kGuesses{as_left,       as_meant,    in_bundles,
 constexpr std::size_t kPhases = 16;
 constexpr Duration kPhaseStep = 610us;
 
-/// The models beside a live target: each guess in the target's own phase, then the plain one in
-/// others.
-constexpr std::size_t kLiveModels = kGuesses.size() + kPhases - 1;
+Duration delay_up_to(Duration most, sessions::Dice& dice) {
+  return Duration{dice.between(Duration{}.count(), most.count())};
+}
 
-Guess guess_of(std::size_t model) { return model < kGuesses.size() ? kGuesses[model] : as_left; }
+/// As it comes over a link in real time: all of it a little later, which nobody sees who sends it.
+Script unevenly(Script script, const std::function<Duration()>& delay) {
+  Instant last{};
+  for (auto& record : script) record.time = last = std::max(last, record.time + delay());
+  return script;
+}
+
+/// The models beside a live target: each guess in the target's own phase, then the plain one in
+/// others, and in others yet unevenly, so that what depends on how far apart two came is no thing
+/// that all agree on.
+constexpr std::size_t kUneven = 8;
+constexpr std::size_t kEven = kGuesses.size() + kPhases - 1;
+constexpr std::size_t kLiveModels = kEven + kUneven;
+
+Script guess_of(std::size_t model, const Script& script, const Played& played) {
+  if (model < kGuesses.size()) return kGuesses[model](script, played);
+  auto guess = as_left(script, played);
+  if (model < kEven) return guess;
+  sessions::Dice dice{model};
+  return unevenly(guess, [&] { return delay_up_to(1ms, dice); });
+}
 Duration phase_of(std::size_t model) {
   if (model < kGuesses.size()) return {};
   return static_cast<Duration::rep>(model - kGuesses.size() + 1) * kPhaseStep;
-}
-
-/// As it comes over a link in real time: all of it later, some of it much later than the rest,
-/// which nobody sees who sends it.
-Script unevenly(const Script& script, sessions::Dice& dice) {
-  constexpr std::int64_t kFewAre = 20;
-  const auto none = Duration{}.count();
-  auto uneven = script;
-  Instant last{};
-  for (auto& record : uneven) {
-    const Duration most = dice.one_in(kFewAre) ? 5ms : 1ms;
-    last = record.time = std::max(last, record.time + Duration{dice.between(none, most.count())});
-  }
-  return uneven;
 }
 
 std::vector<Instant> times_of(const Script& script) {
@@ -202,7 +209,7 @@ BothHeard StageOn<Port>::beside(Models& models, const Script& script, Outcome<Pl
   const auto known = played.value_or(Played{});
   BothHeard both{heard(std::move(played)), {}, lateness_of(script, known.passed)};
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const auto guessed = setup_.is_emulated ? script : guess_of(i)(script, known);
+    const auto guessed = setup_.is_emulated ? script : guess_of(i, script, known);
     both.models.push_back(heard(in_order(play_host(models[i].port(), guessed, setup_.how))));
   }
   return both;
@@ -211,14 +218,16 @@ BothHeard StageOn<Port>::beside(Models& models, const Script& script, Outcome<Pl
 template <class Port>
 Outcome<BothHeard> StageOn<Port>::play_to_stand_in(const Script& script, std::uint64_t seed) {
   constexpr Duration kMostPhase = 20ms;
+  constexpr std::int64_t kFewAre = 20;
   if (!setup_.make_model) return BothHeard{};
   auto models = make_models();
   if (!models) return tl::unexpected{models.error()};
   auto stand_in = make_model();
   if (!stand_in) return tl::unexpected{stand_in.error()};
   sessions::Dice dice{seed};
-  rest(stand_in->port(), Duration{dice.between(1, kMostPhase.count())});
-  auto played = in_order(play_host(stand_in->port(), unevenly(script, dice), setup_.how));
+  rest(stand_in->port(), delay_up_to(kMostPhase, dice));
+  const auto delay = [&] { return delay_up_to(dice.one_in(kFewAre) ? 5ms : 1ms, dice); };
+  auto played = in_order(play_host(stand_in->port(), unevenly(script, delay), setup_.how));
   if (played) played->passed = times_of(script);
   return beside(*models, script, std::move(played));
 }

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <iterator>
 #include <memory>
+#include <ranges>
 #include <set>
 #include <span>
 #include <utility>
@@ -143,6 +144,59 @@ class Judge {
     return Likeness{rules}.is_come_past_by(*difference.after, model.lanes().at(difference.lane));
   }
 
+  /// Whether a message without a counterpart is one of as many as there should be, where models say
+  /// this and that, and the other side comes past it. Of numbers that change one in this tick and
+  /// one in the next no model has all at once, so that nobody can tell which message is which.
+  [[nodiscard]] bool is_only_out_of_step(const RecordingDifference& difference,
+                                         const std::vector<RecordedMessages>& models,
+                                         const RecordedMessages& target) const {
+    const bool is_missing = difference.after == nullptr;
+    const bool is_extra = difference.before == nullptr;
+    if (is_missing == is_extra || judging_.rules.time_tolerance == Duration{}) return false;
+    const auto& message = is_missing ? *difference.before : *difference.after;
+    const auto said = said_alike(message, difference.lane, target);
+    std::vector<SaidAlike> expected;
+    for (const auto& model : models) {
+      expected.push_back(said_alike(message, difference.lane, model));
+    }
+    const auto [fewest, most] = std::ranges::minmax(expected, {}, &SaidAlike::size);
+    if (said.size() < fewest.size() || said.size() > most.size()) return false;
+    const auto& own = is_missing ? expected.front() : said;
+    if (agree_on(std::ranges::find(own, &message) - own.begin(), expected)) return false;
+    return is_missing ? comes_past(message, said)
+                      : std::ranges::any_of(expected, [&](const SaidAlike& model) {
+                          return comes_past(message, model);
+                        });
+  }
+
+  /// All of one kind in one lane.
+  using SaidAlike = std::vector<const RecordedMessage*>;
+
+  [[nodiscard]] static SaidAlike said_alike(const RecordedMessage& message, const std::string& lane,
+                                            const RecordedMessages& said) {
+    SaidAlike all;
+    const auto found = said.lanes().find(lane);
+    if (found == said.lanes().end()) return all;
+    for (const auto& one : found->second) {
+      if (one.message.name == message.message.name) all.push_back(&one);
+    }
+    return all;
+  }
+
+  [[nodiscard]] bool comes_past(const RecordedMessage& message, const SaidAlike& others) const {
+    const auto itself = [](const auto* one) -> const RecordedMessage& { return *one; };
+    return Likeness{judging_.rules}.is_come_past_by(message, std::views::transform(others, itself));
+  }
+
+  /// Whether all say as much and, in that place, the same.
+  [[nodiscard]] bool agree_on(std::ptrdiff_t place, const std::vector<SaidAlike>& all) const {
+    const auto at = static_cast<std::size_t>(place);
+    return std::ranges::all_of(all, [&](const SaidAlike& said) {
+      return at < said.size() && at < all.front().size() &&
+             Likeness{judging_.rules}.has_same_content(*all.front()[at], *said[at]);
+    });
+  }
+
   [[nodiscard]] std::vector<std::pair<Instant, std::string>> all_done() const {
     std::vector<std::pair<Instant, std::string>> all{{Instant::min(), "the beginning"}};
     for (const auto& record : script_) {
@@ -181,6 +235,7 @@ class Judge {
     std::ranges::stable_sort(common, {}, [](const auto& one) { return one.symptom.time; });
     for (auto& one : common) {
       if (one.is_timing && !(one.is_agreed && heard.models.size() > 1)) continue;
+      if (is_only_out_of_step(one.difference, models, target)) continue;
       if (!goes_on(std::move(one))) return;
     }
   }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,10 @@
 #include "cli/fuzz_material.hpp"
 #include "emulators/campaign/author.hpp"
 #include "emulators/campaign/survey.hpp"
+#include "emulators/campaign/talk.hpp"
 #include "harness/rig/judge.hpp"
+#include "harness/wire/parol6/dissector.hpp"
+#include "harness/wire/parol6/frame.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -106,6 +110,29 @@ TEST(Stage, GivesAStandInAllAsUnevenlyAsALinkDoes) {
     EXPECT_EQ(live.heard(script, 1).target.said, live.heard(script, 1).target.said);
     EXPECT_NE(live.heard(script, 1).target.said, live.heard(script, 2).target.said);
   }
+}
+
+/// Frames that come 6 ms apart come 5 or 7 ms apart to some, while a joint moves by 3 steps a
+/// millisecond.
+TEST(Stage, HasModelsThatDifferWhereItMattersHowFarApartMessagesCame) {
+  const Live board{"parol6", "pty:/tmp/nowhere"};
+  parol6::CommandFrame jog{.command = parol6::Command::kJog};
+  jog.speed.front() = StepsPerSecond{3000};
+  const auto bytes = encode(jog);
+  Script script;
+  for (int i = 0; i < 8; ++i) {
+    script.push_back({.time = Instant{6ms * i},
+                      .kind = LinkKind::kStream,
+                      .direction = Direction::kToDevice,
+                      .bytes = {bytes.begin(), bytes.end()}});
+  }
+  std::set<std::int64_t> places;
+  for (const auto& model : board.heard(script, 1).models) {
+    const auto said = messages_of(model.said, parol6::make_dissector);
+    const auto& fourth = said.lanes().begin()->second.at(4).message;
+    places.insert(field_value(*find_field(fourth.fields, "position.j1"), fourth.raw));
+  }
+  EXPECT_GT(*places.rbegin() - *places.begin(), 2);
 }
 
 }  // namespace

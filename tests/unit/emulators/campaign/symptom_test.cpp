@@ -24,14 +24,16 @@ struct Said {
   Duration time;
   std::int32_t speed;
   std::uint8_t object = 0;
+  std::int32_t first = 0;
 };
 
-/// What a board says of its last joint's speed and of its gripper.
+/// What a board says of the speeds of its last joint and its first, and of its gripper.
 Heard board(std::initializer_list<Said> all) {
   Heard heard;
   for (const auto& said : all) {
     parol6::TelemetryFrame frame;
     frame.speed.back() = StepsPerSecond{said.speed};
+    frame.speed.front() = StepsPerSecond{said.first};
     frame.gripper.object_detection = said.object;
     const auto bytes = parol6::encode(frame);
     heard.said.push_back({.time = Instant{said.time},
@@ -92,6 +94,24 @@ TEST(Symptom, IsWhatAllModelsAgreeOnThoughOneComesPast) {
   const auto stale = board({{10ms, 1}, {20ms, 2}, {30ms, 4}});
   EXPECT_TRUE(judge({stale, {sound, sound}}, 12ms));
   EXPECT_FALSE(judge({stale, {sound, other}}, 12ms));
+}
+
+/// The target's second answer is the models' third or fourth, so that what comes before that seems
+/// to be missing, and what comes after it too much.
+TEST(Symptom, IsNoneWhereAsManyComeAsShouldAndAModelComesPastWhatIsOutOfStep) {
+  const auto with = [](Said second, Said third) {
+    return board({{10ms, 0}, second, third, {40ms, 50, 0, 100}, {50ms, 50, 0, 150}});
+  };
+  const auto late = with({20ms, 0}, {30ms, 50, 0, 50});
+  const auto later =
+      board({{10ms, 0}, {15ms, 0, 0, 10}, {20ms, 0, 0, 20}, {30ms, 50, 0, 50}, {50ms, 50, 0, 150}});
+  const Said early{20ms, 50, 0, 50};
+  EXPECT_FALSE(judge({with(early, {30ms, 50, 0, 25}), {late, later}}, 12ms));
+  EXPECT_TRUE(judge({with(early, {30ms, 50, 0, 25}), {late, late}}, 12ms));
+  EXPECT_TRUE(judge({with(early, {30ms, 50, 0, 25}), {late, later}}, 4ms));
+  EXPECT_TRUE(judge({with(early, {30ms, 50, 0, 125}), {late, later}}, 12ms));
+  const auto fewer = board({{10ms, 0}, early, {40ms, 50, 0, 100}, {50ms, 50, 0, 150}});
+  EXPECT_TRUE(judge({fewer, {late, later}}, 12ms));
 }
 
 /// Some from `begin` to before `end`, one each 10 ms.
