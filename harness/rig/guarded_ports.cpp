@@ -36,11 +36,14 @@ GuardedStream::GuardedStream(std::unique_ptr<StreamPort> port, std::unique_ptr<J
 }
 
 Result<std::size_t> GuardedStream::read(std::span<std::byte> into, Instant deadline) {
-  watch().give_sign_of_life();
-  if (unread_.empty()) {
-    if (auto taken = take_in(deadline); !taken) return tl::unexpected{taken.error()};
+  for (;;) {
+    watch().give_sign_of_life();
+    if (!unread_.empty()) return unread_.take(into);
+    if (auto taken = take_in(std::min(deadline, now() + kLongestWait)); !taken) {
+      return tl::unexpected{taken.error()};
+    }
+    if (unread_.empty() && now() >= deadline) return 0;
   }
-  return unread_.take(into);
 }
 
 Result<void> GuardedStream::listen(Instant deadline) {

@@ -74,6 +74,7 @@ struct Line {
   std::deque<test::ByteVector> arriving;  ///< a read each
   std::optional<Error> write_error;
   std::optional<Error> read_error;
+  Duration longest_wait{};
   Instant now{};
 };
 
@@ -89,6 +90,7 @@ class ScriptedPort final : public StreamPort {
   Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
     if (line_.arriving.empty()) {
       if (line_.read_error) return tl::unexpected{*line_.read_error};
+      line_.longest_wait = std::max(line_.longest_wait, deadline - line_.now);
       line_.now = std::max(line_.now, deadline);
       return 0;
     }
@@ -196,6 +198,16 @@ TEST(GuardedStream, ReadingWaitsUntilTheDeadlineIfNothingCame) {
   std::array<std::byte, 4> buffer;
   EXPECT_EQ(stream->read(buffer, at(30ms)).value(), 0U);
   EXPECT_EQ(stream->now(), at(30ms));
+}
+
+/// Its supervisor stops an arm after half a second without a sign of life.
+TEST(GuardedStream, ReadingGivesSignsOfLifeUntilTheDeadline) {
+  Line line;
+  const auto stream = guard(line, {});
+  std::array<std::byte, 4> buffer;
+  EXPECT_EQ(stream->read(buffer, at(10s)).value(), 0U);
+  EXPECT_EQ(stream->now(), at(10s));
+  EXPECT_LT(line.longest_wait, 500ms);
 }
 
 TEST(GuardedStream, TheEmergencyStopStopsTheArmAlsoIfNobodyReads) {
