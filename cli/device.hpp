@@ -16,6 +16,7 @@
 #include "conformance/program_check.hpp"
 #include "conformance/suite.hpp"
 #include "emulators/campaign/alphabet.hpp"
+#include "emulators/campaign/intervals.hpp"
 #include "emulators/campaign/material.hpp"
 #include "emulators/memory/clocked.hpp"
 #include "emulators/memory/hosted.hpp"
@@ -92,6 +93,8 @@ struct FuzzEntry {
   /// Whether what comes of a message depends on more than answers tell, such as how far a joint is
   /// from its switch or where a node is in its tick: live it is not watched. nullptr: of none.
   bool (*strays)(Bytes message){};
+  /// Where the device tells how far apart messages came; none: nowhere.
+  std::optional<campaign::ToldInterval> told_interval{};
   /// With which cases end now and then, where the device does not show at once where it was led.
   campaign::Epilogue epilogue{};
   /// The machines that `--learn` learns; empty: none.

@@ -233,6 +233,7 @@ CampaignOptions campaign_options(const FuzzRun& run, const CampaignState& state,
     options.most_shrinking = kShrinkingLive;
     options.begins_with_survey = true;
     options.judging.horizon += options.judging.rules.time_tolerance;
+    options.judging.told_interval = run.device.fuzz.told_interval;
     options.excuses.add({}, "connection", "time");  // of whoever carries the end of it
   }
   return options;

@@ -232,6 +232,7 @@ class Judge {
       std::erase_if(common, [&](Difference& one) { return !is_among(one, found, models.front()); });
     }
     std::ranges::move(differences_of_beats(models, target), std::back_inserter(common));
+    std::ranges::move(differences_of_intervals(models, target), std::back_inserter(common));
     std::ranges::stable_sort(common, {}, [](const auto& one) { return one.symptom.time; });
     for (auto& one : common) {
       if (one.is_timing && !(one.is_agreed && heard.models.size() > 1)) continue;
@@ -251,6 +252,18 @@ class Judge {
       if (!symptom) continue;
       const bool is_timing = !is_one_sided && is_only_early_or_late(difference, *symptom, model);
       all.push_back({*std::move(symptom), std::move(difference), is_timing, !is_one_sided});
+    }
+    return all;
+  }
+
+  /// Where nobody knows to the microsecond when something came, the rules may let intervals pass.
+  [[nodiscard]] std::vector<Difference> differences_of_intervals(
+      const std::vector<RecordedMessages>& models, const RecordedMessages& target) const {
+    std::vector<Difference> all;
+    if (!judging_.told_interval || judging_.rules.time_tolerance == Duration{}) return all;
+    for (auto& difference : false_intervals(*judging_.told_interval, models, target)) {
+      auto symptom = symptom_at(difference);
+      if (symptom) all.push_back({*std::move(symptom), std::move(difference), false, true});
     }
     return all;
   }

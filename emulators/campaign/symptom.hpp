@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "emulators/campaign/intervals.hpp"
 #include "emulators/campaign/stage.hpp"
 #include "harness/compare/rules.hpp"
 
@@ -54,6 +55,7 @@ struct Judging {
   ComparisonRules rules;
   /// What comes later than the last record by more may still be under way.
   Duration horizon{};
+  std::optional<ToldInterval> told_interval{};  ///< none: the device tells none
 };
 
 /// The first moment at which what the target said is wrong and not excused: its link ended and that
