@@ -93,6 +93,9 @@ struct FuzzEntry {
   /// Whether what comes of a message depends on more than answers tell, such as how far a joint is
   /// from its switch or where a node is in its tick: live it is not watched. nullptr: of none.
   bool (*strays)(Bytes message){};
+  /// The fields of answers that tell what comes of it: of a target that nobody can start again they
+  /// are not judged from there on.
+  std::span<const std::string_view> astray_fields{};
   /// Where the device tells how far apart messages came; none: nowhere.
   std::optional<campaign::ToldInterval> told_interval{};
   /// With which cases end now and then, where the device does not show at once where it was led.

@@ -207,6 +207,7 @@ Outcome<Material> material_of(const Device& device, const RigOptions& how, const
                           .seal = device.fuzz.seal,
                           .addresses = addresses_on(rig->port()),
                           .strays = device.fuzz.strays,
+                          .astray_fields = device.fuzz.astray_fields,
                           .has_hands = how.target.is_emulated(),
                           .has_operations = how.target.is_emulated(),
                           .longest = longest,

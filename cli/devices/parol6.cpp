@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/replay/parol6.hpp"
+
+#include <array>
+#include <string_view>
+
 #include "cli/devices/devices.hpp"
 #include "cli/devices/machines.hpp"
 #include "cli/parol6/commands.hpp"
@@ -36,6 +40,10 @@ bool strays(Bytes message) {
   const auto code = decode_command(body_of(message.first<kCommandFrameSize>())).command;
   return code == Command::kHome || code == Command::kDemo;
 }
+constexpr std::array<std::string_view, 13> kAstrayFields{
+    "homed",       "position.j1", "position.j2", "position.j3", "position.j4",
+    "position.j5", "position.j6", "speed.j1",    "speed.j2",    "speed.j3",
+    "speed.j4",    "speed.j5",    "speed.j6"};
 
 }  // namespace
 
@@ -64,6 +72,7 @@ cli::Device device() {
           .draw_session = sessions::draw,
           .live_rules = kLiveRules,
           .fuzz = {.strays = strays,
+                   .astray_fields = kAstrayFields,
                    .told_interval = {{.message = "telemetry",
                                       .field = "timing",
                                       .ticks_per_second = kTicksPerSecond}},

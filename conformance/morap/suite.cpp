@@ -36,9 +36,9 @@ constexpr std::array kSubjects{
 };
 
 /// All ways to stop, from every state.
-constexpr auto kVital = std::to_array<std::string_view>({".voltage.disabled", ".voltage.forgotten",
-                                                         ".voltage.uncalibrated",
-                                                         ".motion.disabled", ".motion.latched"});
+constexpr auto kVital = std::to_array<std::string_view>(
+    {".voltage.disabled", ".voltage.forgotten", ".voltage.uncalibrated", ".motion.disabled",
+     ".motion.latched", ".motion.ends", ".motion.forgotten", ".motion.open-loop"});
 
 }  // namespace
 

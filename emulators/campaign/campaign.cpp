@@ -87,8 +87,12 @@ class Campaign {
         state_{state},
         listener_{listener},
         author_{material},
-        excuses_{options.excuses} {
+        excuses_{options.excuses},
+        judging_astray_{judging_astray(material, options.judging)} {
     if (options.begins_with_survey) survey_.emplace(material, options.seed);
+    if (survey_ && can_go_astray()) {
+      survey_->put_last([this](const Script& script) { return goes_astray(script); });
+    }
     for (const auto& finding : state.findings) excuse(finding);
     state_.causes = causes_of(state_.findings).size();
   }
@@ -194,10 +198,35 @@ class Campaign {
 
   [[nodiscard]] Outcome<Seen> see(const Script& script) {
     const auto whole = with_question(script);
+    is_astray_ = is_astray_ || goes_astray(whole);
     auto heard = stage_.play(whole);
     if (!heard) return tl::unexpected{heard.error()};
-    auto symptom = symptom_of(whole, *heard, options_.judging, excuses_);
+    auto symptom = symptom_of(whole, *heard, judging(), excuses_);
     return Seen{*std::move(heard), std::move(symptom)};
+  }
+
+  [[nodiscard]] bool can_go_astray() const {
+    return !stage_.can_reset() && !material_.astray_fields.empty();
+  }
+  /// Whether it leads a target that nobody can start again where no model can follow.
+  [[nodiscard]] bool goes_astray(const Script& script) const {
+    if (!can_go_astray()) return false;
+    const auto messages = messages_of(script, material_.make_dissector);
+    return std::ranges::any_of(messages.lanes(), [this](const auto& lane) {
+      return std::ranges::any_of(
+          lane.second, [this](const auto& one) { return material_.strays(one.message.raw); });
+    });
+  }
+  /// What tells where the target is says nothing once it is astray.
+  [[nodiscard]] const Judging& judging() const noexcept {
+    return is_astray_ ? judging_astray_ : options_.judging;
+  }
+  [[nodiscard]] static Judging judging_astray(const Material& material, Judging judging) {
+    for (const auto field : material.astray_fields) {
+      judging.rules.fields.push_back(
+          {.message = {}, .name = std::string{field}, .is_ignored = true});
+    }
+    return judging;
   }
 
   [[nodiscard]] RecordedMessages messages_in(const Seen& seen) const {
@@ -282,7 +311,7 @@ class Campaign {
     for (int left = options_.doubts; left > 0; --left) {
       const auto heard = stage_.play_to_stand_in(whole, ++doubts_);
       if (!heard) return tl::unexpected{heard.error()};
-      const auto symptom = symptom_of(whole, *heard, options_.judging, excuses_);
+      const auto symptom = symptom_of(whole, *heard, judging(), excuses_);
       if (symptom && is_it(*symptom)) return true;
     }
     return false;
@@ -404,10 +433,10 @@ class Campaign {
       all.insert(std::make_move_iterator(ways.begin()), std::make_move_iterator(ways.end()));
     };
     const auto judge = [&](const Script& whole, const BothHeard& heard) {
-      add(all_ways(whole, heard, options_.judging, excuses_at_first_, excuses_));
+      add(all_ways(whole, heard, judging(), excuses_at_first_, excuses_));
     };
     const auto judge_sibling = [&](const Script& whole, const BothHeard& heard) {
-      const auto symptom = symptom_of(whole, heard, options_.judging, excuses_anyway_);
+      const auto symptom = symptom_of(whole, heard, judging(), excuses_anyway_);
       if (symptom && symptom->answer == finding.symptom.answer &&
           are_alike(*symptom, finding.symptom)) {
         add(symptom->ways());
@@ -467,6 +496,8 @@ class Campaign {
   Author author_;
   std::optional<Survey> survey_;
   Excuses excuses_;
+  Judging judging_astray_;
+  bool is_astray_ = false;                       ///< since a message that strays
   Excuses excuses_at_first_ = options_.excuses;  ///< without what was found
   Excuses excuses_anyway_ = options_.excuses;    ///< with what shows whatever is done
   std::map<std::string, int> of_part_;

@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
-#include <string>
+#include <utility>
+
+#include "emulators/campaign/talk.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -15,18 +17,6 @@ namespace {
 using namespace std::chrono_literals;
 
 using Seconds = std::chrono::duration<double>;
-using Answers = std::vector<const RecordedMessage*>;
-
-Answers answers_in(const RecordedMessages& said, const std::string& lane,
-                   std::string_view message) {
-  Answers all;
-  const auto found = said.lanes().find(lane);
-  if (found == said.lanes().end()) return all;
-  for (const auto& one : found->second) {
-    if (one.message.name == message && one.message.fault.empty()) all.push_back(&one);
-  }
-  return all;
-}
 
 struct Bounds {
   Seconds least{};
@@ -36,12 +26,14 @@ struct Bounds {
 /// Of one lane, all of them with as many answers.
 class Lane {
  public:
-  Lane(const ToldInterval& told, Answers target, std::vector<Answers> models)
+  Lane(const ToldInterval& told, MessagesInOrder target, std::vector<MessagesInOrder> models)
       : told_{told}, target_{std::move(target)}, models_{std::move(models)} {}
 
   /// What is told with that answer, which is not the first, if it cannot be.
   [[nodiscard]] std::optional<RecordingDifference> difference_at(std::size_t place) const {
-    const auto keeps_to_it = [&](const Answers& model) { return is_possible(model, place); };
+    const auto keeps_to_it = [&](const MessagesInOrder& model) {
+      return is_possible(model, place);
+    };
     if (is_possible(target_, place) || !std::ranges::all_of(models_, keeps_to_it)) {
       return std::nullopt;
     }
@@ -75,7 +67,7 @@ class Lane {
     return first;
   }
 
-  [[nodiscard]] Bounds bounds_of(const Answers& said, std::size_t place) const {
+  [[nodiscard]] Bounds bounds_of(const MessagesInOrder& said, std::size_t place) const {
     constexpr Seconds kSlack = 1ms;
     constexpr double kOfClock = 0.02;
     const Seconds least = earliest(place) - said[place - 1]->message.time;
@@ -84,7 +76,7 @@ class Lane {
     return {std::max(Seconds{}, least - slack), most + slack};
   }
 
-  [[nodiscard]] bool is_possible(const Answers& said, std::size_t place) const {
+  [[nodiscard]] bool is_possible(const MessagesInOrder& said, std::size_t place) const {
     const auto bounds = bounds_of(said, place);
     const Seconds all{values() / told_.ticks_per_second};
     const Seconds value{static_cast<double>(value_of(*said[place])) / told_.ticks_per_second};
@@ -93,8 +85,8 @@ class Lane {
   }
 
   const ToldInterval& told_;
-  Answers target_;
-  std::vector<Answers> models_;
+  MessagesInOrder target_;
+  std::vector<MessagesInOrder> models_;
 };
 
 }  // namespace
@@ -104,11 +96,11 @@ std::vector<RecordingDifference> false_intervals(const ToldInterval& told,
                                                  const RecordedMessages& target) {
   std::vector<RecordingDifference> all;
   for (const auto& [name, messages] : target.lanes()) {
-    auto said = answers_in(target, name, told.message);
+    auto said = all_named(told.message, {}, name, target);
     const auto count = said.size();
-    std::vector<Answers> expected;
-    for (const auto& model : models) expected.push_back(answers_in(model, name, told.message));
-    const auto is_as_many = [&](const Answers& some) { return some.size() == count; };
+    std::vector<MessagesInOrder> expected;
+    for (const auto& model : models) expected.push_back(all_named(told.message, {}, name, model));
+    const auto is_as_many = [&](const MessagesInOrder& some) { return some.size() == count; };
     if (expected.empty() || !std::ranges::all_of(expected, is_as_many)) continue;
     const Lane lane{told, std::move(said), std::move(expected)};
     for (std::size_t place = 1; place < count; ++place) {

@@ -41,6 +41,8 @@ struct Material {
   std::function<void(Script& script)> permit_case{};
   /// Whether what comes of a message depends on more than answers tell; nullptr: of none.
   bool (*strays)(Bytes message){};
+  /// The fields of answers that tell what comes of it.
+  std::span<const std::string_view> astray_fields{};
   bool has_hands = false;      ///< what is beside the link can be done
   bool has_operations = true;  ///< of a bus: transactions may have any form
   /// A client that closes is known to have; else only, as over TCP at first, that it says no more.

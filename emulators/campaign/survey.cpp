@@ -36,6 +36,10 @@ Survey::Survey(const Material& material, std::uint64_t seed)
   plan();
 }
 
+void Survey::put_last(const std::function<bool(const Script& script)>& is_one) {
+  std::ranges::stable_partition(cases_, [&](const Case& one) { return !is_one(one.script()); });
+}
+
 void Survey::plan() {
   const auto of_all = [this](std::size_t state, std::initializer_list<Exercise> exercises) {
     for (const auto exercise : exercises) {

@@ -28,6 +28,8 @@ class Survey {
 
   [[nodiscard]] std::size_t size() const noexcept { return cases_.size(); }
   [[nodiscard]] Script at(std::size_t number) const { return cases_[number].script(); }
+  /// Those come after all others.
+  void put_last(const std::function<bool(const Script& script)>& is_one);
 
  private:
   using Exercise = Script (Exercises::*)(const Setting& setting) const;

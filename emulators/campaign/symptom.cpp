@@ -154,44 +154,32 @@ class Judge {
     const bool is_extra = difference.before == nullptr;
     if (is_missing == is_extra || judging_.rules.time_tolerance == Duration{}) return false;
     const auto& message = is_missing ? *difference.before : *difference.after;
-    const auto said = said_alike(message, difference.lane, target);
-    std::vector<SaidAlike> expected;
-    for (const auto& model : models) {
-      expected.push_back(said_alike(message, difference.lane, model));
-    }
-    const auto [fewest, most] = std::ranges::minmax(expected, {}, &SaidAlike::size);
+    const auto alike_in = [&](const RecordedMessages& some) {
+      return all_named(message.message.name, message.message.fault, difference.lane, some);
+    };
+    const auto said = alike_in(target);
+    std::vector<MessagesInOrder> expected;
+    for (const auto& model : models) expected.push_back(alike_in(model));
+    const auto [fewest, most] = std::ranges::minmax(expected, {}, &MessagesInOrder::size);
     if (said.size() < fewest.size() || said.size() > most.size()) return false;
     const auto& own = is_missing ? expected.front() : said;
     if (agree_on(std::ranges::find(own, &message) - own.begin(), expected)) return false;
     return is_missing ? comes_past(message, said)
-                      : std::ranges::any_of(expected, [&](const SaidAlike& model) {
+                      : std::ranges::any_of(expected, [&](const MessagesInOrder& model) {
                           return comes_past(message, model);
                         });
   }
 
-  /// All of one kind in one lane.
-  using SaidAlike = std::vector<const RecordedMessage*>;
-
-  [[nodiscard]] static SaidAlike said_alike(const RecordedMessage& message, const std::string& lane,
-                                            const RecordedMessages& said) {
-    SaidAlike all;
-    const auto found = said.lanes().find(lane);
-    if (found == said.lanes().end()) return all;
-    for (const auto& one : found->second) {
-      if (one.message.name == message.message.name) all.push_back(&one);
-    }
-    return all;
-  }
-
-  [[nodiscard]] bool comes_past(const RecordedMessage& message, const SaidAlike& others) const {
+  [[nodiscard]] bool comes_past(const RecordedMessage& message,
+                                const MessagesInOrder& others) const {
     const auto itself = [](const auto* one) -> const RecordedMessage& { return *one; };
     return Likeness{judging_.rules}.is_come_past_by(message, std::views::transform(others, itself));
   }
 
   /// Whether all say as much and, in that place, the same.
-  [[nodiscard]] bool agree_on(std::ptrdiff_t place, const std::vector<SaidAlike>& all) const {
+  [[nodiscard]] bool agree_on(std::ptrdiff_t place, const std::vector<MessagesInOrder>& all) const {
     const auto at = static_cast<std::size_t>(place);
-    return std::ranges::all_of(all, [&](const SaidAlike& said) {
+    return std::ranges::all_of(all, [&](const MessagesInOrder& said) {
       return at < said.size() && at < all.front().size() &&
              Likeness{judging_.rules}.has_same_content(*all.front()[at], *said[at]);
     });

@@ -72,6 +72,17 @@ RecordedMessages messages_of(const std::vector<KeptRecord>& said, MakeDissector 
   return messages;
 }
 
+MessagesInOrder all_named(std::string_view name, std::string_view fault, const std::string& lane,
+                          const RecordedMessages& said) {
+  MessagesInOrder all;
+  const auto found = said.lanes().find(lane);
+  if (found == said.lanes().end()) return all;
+  for (const auto& one : found->second) {
+    if (one.message.name == name && one.message.fault == fault) all.push_back(&one);
+  }
+  return all;
+}
+
 std::uint64_t state_told(const RecordedMessages& messages, Instant begin) {
   std::map<std::string_view, std::uint64_t> last;
   for (const auto& [lane, said] : messages.lanes()) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <unordered_set>
 #include <vector>
 
@@ -13,6 +15,13 @@ namespace armjig::campaign {
 /// What was said as messages.
 [[nodiscard]] RecordedMessages messages_of(const std::vector<KeptRecord>& said,
                                            MakeDissector make_dissector);
+
+/// Messages of some recording, which has to live longer.
+using MessagesInOrder = std::vector<const RecordedMessage*>;
+
+/// All that were said in that lane under this name, malformed in that way, or well-formed.
+[[nodiscard]] MessagesInOrder all_named(std::string_view name, std::string_view fault,
+                                        const std::string& lane, const RecordedMessages& said);
 
 /// The state of a device as its messages told it last, of those since `begin`.
 [[nodiscard]] std::uint64_t state_told(const RecordedMessages& messages, Instant begin);

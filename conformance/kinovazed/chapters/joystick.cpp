@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "conformance/kinovazed/cases.hpp"
 #include "conformance/kinovazed/fixture.hpp"
 
@@ -117,7 +119,7 @@ Duration nearer_by(ServerBench& server, const Side& side) {
 
 struct Ending {
   const char* command;
-  Event event;
+  std::optional<Event> event{};  ///< that follows its acceptance
 };
 
 /// Going up, then stopped: the way back must not grow while time passes.
@@ -129,7 +131,11 @@ void expect_stopped_by(ServerBench& server, std::initializer_list<Ending> ending
   for (const auto& [command, event] : endings) {
     rise_from_home(server);
     server.pause(kPush);
-    server.perform(command, event);
+    if (event) {
+      server.perform(command, *event);
+    } else {
+      server.accept(command);
+    }
     server.pause(4s);
     if (event == Event::kFreezed) server.perform("Unfreeze", Event::kUnfreezed);
     server.about(std::string{"the way back from a rise that was ended by "} + command);
@@ -353,6 +359,11 @@ constexpr Clause kJoystickClauses[] = {
            expect_time(server, back - even, -kAway - server.noise(), kAway + server.noise());
          }
        }),
+
+    must("kinovazed.joystick.stopped-by-zeroes", "Three zeroes stop the arm that is steered.",
+         "server; reference 8.1"),
+    in(kIdle, "The way back from a rise does not grow in 4 s.",
+       [](ServerBench& server) { expect_stopped_by(server, {{kStop}}); }),
 
     must("kinovazed.joystick.stopped-by-freeze", "Freeze stops the arm that is steered.",
          "document; server; reference 6.6"),

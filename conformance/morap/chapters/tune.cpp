@@ -19,11 +19,11 @@ void tuned(NodeBench& node) {
   }
 }
 
-/// The same where the set before had more coefficients than any that is tuned.
+/// The same where the set before had more coefficients than any that is tuned, and an integrator.
 template <TuneKind kind>
 void tuned_after_a_larger_one(NodeBench& node) {
   const auto most = filter({0.0F, 0.0F, 0.0F, 0.0F});
-  node.send(ControllerSet{kind_of(kind), kIdleRateHz, most, most, most, 0.0F});
+  node.send(ControllerSet{kind_of(kind), kIdleRateHz, most, most, most, 0.5F});
   node.settle();
   tuned<kind>(node);
 }

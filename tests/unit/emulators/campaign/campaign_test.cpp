@@ -389,6 +389,49 @@ TEST(Campaign, PlaysAgainNoMoreThanTheLastCases) {
   EXPECT_LT(with_history, last_cases(10));
 }
 
+/// A device that nobody can start again.
+class OnceBegunStage final : public Stage {
+ public:
+  explicit OnceBegunStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
+  Outcome<void> reset() override {
+    return std::exchange(was_begun_, true) ? Outcome<void>{} : stage_->reset();
+  }
+  [[nodiscard]] bool can_reset() const override { return false; }
+  Outcome<void> renew_models() override { return {}; }
+  Outcome<BothHeard> play(const Script& script) override { return stage_->play(script); }
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  bool was_begun_ = false;
+};
+
+/// Of a board that nobody can start again, whose joints are elsewhere than anybody knows.
+CampaignState run_elsewhere(const std::string& fault, bool knows_what_strays) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  const auto target = emulated("?to-switch=9000,5000,7000,4000,3000,8000" + fault);
+  auto material = cli::material_of(device, target, emulated(""), 3s).value();
+  if (!knows_what_strays) material.astray_fields = {};
+  OnceBegunStage stage{cli::stage_of(device, target, device, emulated(""), Hand{}, 20ms)};
+  CampaignState state;
+  const CampaignOptions options{
+      .most_cases = 60,
+      .judging = {device.make_dissector, ComparisonRules::parse(device.live_rules, "live").value(),
+                  20ms},
+      .cases_between_resets = 4};
+  const auto done = run_campaign(stage, material, options, state, {});
+  EXPECT_TRUE(done) << done.error().hint;
+  return state;
+}
+
+TEST(Campaign, DoesNotJudgeWhereATargetIsThatItLedAstray) {
+  const auto is_accused = [](const CampaignState& state) {
+    return !state.findings.empty() || !state.passed_over.empty();
+  };
+  EXPECT_FALSE(is_accused(run_elsewhere("", true)));
+  EXPECT_TRUE(is_accused(run_elsewhere("", false)));
+  EXPECT_TRUE(is_accused(run_elsewhere("&fault=stuck:echo", true)));
+}
+
 /// Notes of each script how long it is, and whether the device is as new.
 class NotingStage final : public Stage {
  public:
