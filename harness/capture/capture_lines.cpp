@@ -105,11 +105,7 @@ class LineCaptureReader final : public CaptureReader {
       json.erase("t_ms");
     } else {
       json.erase("t_us");
-      const auto ns = json.value("ns", Json{});
-      if (ns.is_number_unsigned() && ns > 0 && ns < kNsPerUs) {
-        record.time += Duration{ns.get<std::int64_t>()};
-        json.erase("ns");
-      }
+      if (record.time.time_since_epoch().count() % kNsPerUs != 0) json.erase("ns");
     }
     const char* const dir = json.contains("op") ? "op" : "dir";
     if (kind == LinkKind::kEvents) {

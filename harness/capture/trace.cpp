@@ -89,6 +89,14 @@ Json parse_object(std::string_view line) {
   return json;
 }
 
+/// What a time has besides its microseconds; none where that is no such number.
+Duration rest_of_time(const Json& json) {
+  constexpr std::int64_t kNsPerUs = 1000;
+  const auto ns = json.value("ns", Json{});
+  if (!ns.is_number_unsigned() || ns >= kNsPerUs) return {};
+  return Duration{ns.get<std::int64_t>()};
+}
+
 Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
                                 std::string_view line) {
   if (is_too_deep(line)) return malformed(path, number, std::string{kTooDeep});
@@ -105,7 +113,8 @@ Outcome<TraceEvent> parse_event(const std::string& path, std::size_t number,
       at(is_in_milliseconds
              ? Duration{std::chrono::milliseconds{
                    reader.integer("t_ms", 0, kLatestMicroseconds / 1000)}}
-             : Duration{std::chrono::microseconds{reader.integer("t_us", 0, kLatestMicroseconds)}});
+             : Duration{std::chrono::microseconds{reader.integer("t_us", 0, kLatestMicroseconds)}} +
+                   rest_of_time(json));
   event.dir = reader.text(dir);
   event.bytes = reader.bytes("hex");
   if (json.contains("addr")) {

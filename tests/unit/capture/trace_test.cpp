@@ -78,6 +78,17 @@ TEST(Trace, KnowsWhatWasAcknowledgedOnABus) {  // captures/morap has such lines
             R"(x.jsonl:2 "addr" is not a whole number in range)");
 }
 
+/// Captures have them: ticks of a node are no whole microseconds apart.
+TEST(Trace, HasTheNanosecondsOfCaptures) {
+  const auto trace = parse(R"({"t_us":5,"ns":315,"dir":"to_device","hex":""}
+{"t_us":6,"ns":1000,"dir":"to_device","hex":""}
+{"t_us":7,"ns":"1","dir":"to_device","hex":""})");
+  ASSERT_TRUE(trace);
+  EXPECT_EQ(trace->events[0].time, Instant{5315ns});
+  EXPECT_EQ(trace->events[1].time, Instant{6us}) << "no such number";
+  EXPECT_EQ(trace->events[2].time, Instant{7us}) << "no such number";
+}
+
 TEST(Trace, ReadsTimesInMilliseconds) {  // captures/kinovazed has them
   const auto trace = parse(R"({"t_ms":12,"dir":"to_device","hex":""})");
   ASSERT_TRUE(trace);
