@@ -285,10 +285,7 @@ class BoardJudge final : public OneStopJudge {
   }
 
   [[nodiscard]] Verdict judge_go_to(const CommandFrame& frame, GoToWay& way) const {
-    if (!is_arm_homed()) {
-      if (leads_nowhere(frame)) return std::nullopt;
-      return Refusal{Hazard::kMove, "go-to needs a homed arm"};
-    }
+    if (!is_arm_homed()) return Refusal{Hazard::kMove, "go-to needs a homed arm"};
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& bounds = kJointBounds[j];
       const auto leads_out = [&](Steps place) {
@@ -307,13 +304,6 @@ class BoardJudge final : public OneStopJudge {
                                               "in smaller pieces",
                                               excess.joint + 1, describe(excess),
                                               kJoints[excess.joint].max_speed.value)};
-  }
-
-  /// Wherever it really is, an arm that is sent to where it says to be stays there.
-  [[nodiscard]] bool leads_nowhere(const CommandFrame& frame) const {
-    const auto is_zero = [](StepsPerSecond speed) { return speed == StepsPerSecond{}; };
-    return telemetry_ && frame.position == telemetry_->position &&
-           std::ranges::all_of(frame.speed, is_zero);
   }
 
   [[nodiscard]] std::optional<std::string> reason_to_stop(

@@ -40,12 +40,9 @@ KeptRecord sent(Command command, Duration time) {
   return record_of(CommandFrame{.position = kMiddle, .command = command}, Direction::kToDevice,
                    time);
 }
-/// A step beside the middle.
 KeptRecord said(std::uint8_t homed, Duration time,
                 std::uint8_t io = parol6::io_flag::kEstopReleased) {
-  auto position = kMiddle;
-  position[0] = position[0] + Steps{1};
-  return record_of(TelemetryFrame{.position = position, .homed = homed, .io = io},
+  return record_of(TelemetryFrame{.position = kMiddle, .homed = homed, .io = io},
                    Direction::kFromDevice, time);
 }
 

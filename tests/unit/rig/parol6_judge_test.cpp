@@ -322,21 +322,6 @@ TEST(Parol6Judge, GoToNeedsAHomedArm) {
   EXPECT_FALSE(court.judge(go_to(kMiddle)));
 }
 
-/// As the suite asks whether it ends homing (parol6.home.ended-by-go-to).
-TEST(Parol6Judge, AGoToToWhereAnArmSaysToBeLeadsNowhere) {
-  auto rest = unhomed(Command::kIdle);
-  rest.position = {Steps{1}, Steps{2}, Steps{3}, Steps{4}, Steps{5}, Steps{6}};
-  auto elsewhere = rest.position;
-  elsewhere[3] = Steps{5};
-  auto fed = go_to(rest.position);
-  fed.speed[2] = StepsPerSecond{1};
-  Court court{Permissions::all()};
-  court.answer(rest);
-  EXPECT_FALSE(court.judge(go_to(rest.position)));
-  EXPECT_TRUE(court.judge(go_to(elsewhere)));
-  EXPECT_TRUE(court.judge(fed));
-}
-
 TEST(Parol6Judge, GoToStaysBetweenTheBoundsOfEachJoint) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     for (const auto& [bound, outwards] :
