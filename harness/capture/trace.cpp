@@ -91,9 +91,9 @@ Json parse_object(std::string_view line) {
 
 /// What a time has besides its microseconds; none where that is no such number.
 Duration rest_of_time(const Json& json) {
-  constexpr std::int64_t kNsPerUs = 1000;
+  constexpr std::int64_t kOneMicrosecond = 1000;
   const auto ns = json.value("ns", Json{});
-  if (!ns.is_number_unsigned() || ns >= kNsPerUs) return {};
+  if (!ns.is_number_unsigned() || ns >= kOneMicrosecond) return {};
   return Duration{ns.get<std::int64_t>()};
 }
 
