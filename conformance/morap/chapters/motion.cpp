@@ -160,11 +160,10 @@ constexpr auto kThenSpeed = on<after<drive, goes_at_one_radian_a_second>>;
 template <Drive drive>
 constexpr auto kThenPosition = on<after<drive, goes_to_half>>;
 
-constexpr float kPlace = 1.0F;
-
 /// What it is asked for is where it stands, which is far from where its angles begin.
 template <CommandId mode>
 void stays(NodeBench& node) {
+  constexpr float kPlace = 1.0F;
   constexpr int kMostLevels = 2;  // a position is known to a count
   node.send(kCalibrateAngle, kPlace);
   const float angle = node.number(kReadAngle);
