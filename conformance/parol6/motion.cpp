@@ -125,6 +125,13 @@ void begin_homing(BoardBench& board, Duration time) {
   board.keep_asking(idle(), time);
 }
 
+Answer rest_in_homing(BoardBench& board) {
+  constexpr int kPause = 42;  // means nothing (parol6.home.paused)
+  board.act(with_code(kPause));
+  board.act(with_code(kPause));
+  return board.ask(with_code(kPause));
+}
+
 void home_by_idling(BoardBench& board) {
   constexpr Duration kWholeRun = std::chrono::seconds{90};
   board.act(with_code(Command::kHome));

@@ -57,6 +57,9 @@ void expect_reported(BoardBench& board, const Answer& answer, const Speeds& spee
 /// near its standby position.
 void begin_homing(BoardBench& board, Duration time);
 
+/// Pauses homing and gives an answer of an arm that stands, which also a guard has seen by then.
+Answer rest_in_homing(BoardBench& board);
+
 /// Homes an arm wherever it is, with one home command and idle frames; a finding if it takes more
 /// than 90 s.
 void home_by_idling(BoardBench& board);

@@ -84,6 +84,8 @@ class Belief {
     if (!is_echo && moves(telemetry.echo)) is_unheard_ = true;
   }
 
+  [[nodiscard]] bool may_be_homing() const noexcept { return may_be_homing_; }
+
   [[nodiscard]] bool may_be_moving() const noexcept {
     return moves(latched_.command) || may_be_homing_ || is_unheard_;
   }
@@ -175,6 +177,7 @@ class BoardJudge final : public OneStopJudge {
       const auto telemetry = telemetry_of(step);
       if (!telemetry) return;
       const auto before = std::exchange(telemetry_, telemetry);
+      stands_ = before && before->position == telemetry_->position;
       unanswered_ = 0;
       if (may_be_moving() && !stop_reason_) stop_reason_ = reason_to_stop(before);
       shipped_.observe(*telemetry_);
@@ -238,6 +241,7 @@ class BoardJudge final : public OneStopJudge {
       case Command::kGoTo:
         if (auto refusal = needs(Hazard::kMove, "go-to")) return refusal;
         if (auto refusal = refuse_when_unsafe(Hazard::kMove)) return refusal;
+        if (board.may_be_homing() && leads_nowhere(frame)) return std::nullopt;
         return judge_go_to(frame, board.way());
       case Command::kDemo:
         if (auto refusal = needs(Hazard::kMove, "the demonstration")) return refusal;
@@ -282,6 +286,13 @@ class BoardJudge final : public OneStopJudge {
       }
     }
     return std::nullopt;
+  }
+
+  /// To where an arm that stands says to be. That ends homing, and moves nothing.
+  [[nodiscard]] bool leads_nowhere(const CommandFrame& frame) const {
+    constexpr std::array<StepsPerSecond, kJointCount> kNoSpeeds{};
+    return stands_ && unanswered_ == 0 && frame.position == telemetry_->position &&
+           frame.speed == kNoSpeeds;
   }
 
   [[nodiscard]] Verdict judge_go_to(const CommandFrame& frame, GoToWay& way) const {
@@ -352,6 +363,7 @@ class BoardJudge final : public OneStopJudge {
   int unanswered_ = 0;             ///< frames since the last telemetry
   Splitter splitter_{kTelemetryPayloadSize};
   std::optional<TelemetryFrame> telemetry_;
+  bool stands_ = false;  ///< as far as the last two answers tell
   std::optional<std::string> stop_reason_;
   Refusal::Matter matter_of_stop_{};
   std::array<std::byte, kFlushSize + kCommandFrameSize> stop_{};

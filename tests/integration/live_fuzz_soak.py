@@ -13,19 +13,14 @@ Each device is on its kind of port: a pseudo-terminal, TCP, a virtual I2C bus. I
 board's program is. Whether a finding is of the defect, `replay` on a sound device tells, under the rules of campaigns."""
 
 import concurrent.futures
-import contextlib
 import json
-import os
-import pathlib
 import re
-import shlex
-import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 
+from hosted_devices import DEVICES, come_first, hosted, load
 from rare_defects import SHORTEST
 
 ARMJIG, SOURCE, WHAT = sys.argv[1:4]
@@ -39,86 +34,8 @@ WARM_UP = 120  # seconds, in which memory is used for the first time
 MOST_GROWTH = 1024  # KiB
 AT_ONCE = 4
 
-# How each is hosted, and the input that makes it as new. None does that to the axes and fingers of a board, so its
-# program is started again.
-DEVICES = {"parol6": (["--link", "{folder}/arm"], None), "kinovazed": (["--tcp", "0"], "restart"),
-           "morap": ([], "power")}
-RESTART = """
-kill $(cat {folder}/pid)
-while [ -L {folder}/arm ]; do sleep 0.01; done
-{command} </dev/null >/dev/null 2>&1 &
-echo $! >{folder}/pid
-while ! [ -L {folder}/arm ]; do sleep 0.01; done
-"""
-
-
-class Hosted:
-    """An emulated device and what a campaign has to know of it."""
-
-    def __init__(self, device, folder, *options):
-        self.device, self.folder = device, pathlib.Path(folder)
-        place, restart = DEVICES[device]
-        self.inputs, self.answers = self.folder / "inputs", self.folder / "answers"
-        os.mkfifo(self.inputs)
-        # Open for both directions, so that nobody waits for the other end, and it never ends.
-        inputs = os.open(self.inputs, os.O_RDWR)
-        command = [ARMJIG, "emulate", device, *(word.format(folder=folder) for word in place), *options]
-        # No pipe: a server logs each position that it is asked for, and would stand still once nobody took that.
-        with open(self.answers, "wb") as log:
-            self.process = subprocess.Popen(command, stdin=inputs, stdout=subprocess.PIPE, stderr=log, text=True)
-        os.close(inputs)
-        self.pid = self.folder / "pid"
-        self.pid.write_text(f"{self.process.pid}\n")
-        self.environment = dict(os.environ)
-        self.target = self.find()
-        self.restart = self.input(restart) if restart else self.script(command)
-
-    def find(self):
-        line = self.process.stdout.readline()
-        if self.device == "parol6":  # the name that stays comes last
-            line = self.process.stdout.readline()
-        if self.device == "morap":
-            for word in self.process.stdout.readline().split():
-                if "=" in word:
-                    name, _, value = word.partition("=")
-                    self.environment[name] = value
-            return "i2c:/dev/i2c-1"
-        return line.split()[1]
-
-    def input(self, name):
-        """A command for the shell that returns when the device has it, which says so."""
-        count = f"$(grep -c '{name} is 1$' {self.answers})"
-        return f"had={count}; echo {name} 1 >{self.inputs}; while [ {count} -eq $had ]; do sleep 0.005; done; true"
-
-    def script(self, command):
-        path = self.folder / "restart"
-        path.write_text(RESTART.format(folder=self.folder, command=shlex.join(command)))
-        return f"sh {path}"
-
-    def memory(self):
-        """In KiB."""
-        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
-        return int(re.search(r"VmRSS:\s+(\d+)", status)[1])
-
-    def campaign(self, report, *arguments):
-        return subprocess.run(
-            [ARMJIG, "fuzz", self.device, "--target", self.target, "--allow", "all", "--json", str(report), "--out",
-             str(self.folder / "out"), *arguments], capture_output=True, text=True, check=False, env=self.environment)
-
-    def end(self):
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(int(self.pid.read_text()), signal.SIGTERM)
-        self.process.communicate()
-
-
-@contextlib.contextmanager
-def hosted(device, *options):
-    with tempfile.TemporaryDirectory() as folder:
-        one = Hosted(device, folder, *options)
-        try:
-            yield one
-        finally:
-            one.end()
+def campaign(one, report, *arguments):
+    return one.run("fuzz", one.device, "--json", str(report), "--out", str(one.folder / "out"), *arguments)
 
 
 def known_of(device):
@@ -135,16 +52,11 @@ def failed(rows):
     return [row for row in rows if row["verdict"] == "fail"]
 
 
-def load():
-    return f"load {os.getloadavg()[0]:.0f}"
-
-
 def shows(one, finding):
     """Whether the finding shows there, too, each of three times."""
     for _ in range(3):
         subprocess.run(["sh", "-c", one.restart], check=True)
-        done = subprocess.run([ARMJIG, "replay", finding, "--target", one.target, "--allow", "all"],
-                              capture_output=True, text=True, check=False, env=one.environment)
+        done = one.run("replay", finding)
         if done.returncode not in (0, 1):
             raise RuntimeError(done.stderr)
         if done.returncode == 0:
@@ -154,14 +66,14 @@ def shows(one, finding):
 
 def is_real(device, finding):
     """A sound device does not show it."""
-    with hosted(device) as sound:
+    with hosted(ARMJIG, device) as sound:
         return not shows(sound, finding)
 
 
 def find_rare(device, name):
-    with hosted(device, "--set", f"fault=rare:{name}") as one:
+    with hosted(ARMJIG, device, "--set", f"fault=rare:{name}") as one:
         report = one.folder / "report.json"
-        done = one.campaign(report, "--restart", one.restart, *known_of(device), "--max-time",
+        done = campaign(one, report, "--restart", one.restart, *known_of(device), "--max-time",
                             str(RARE_SECONDS + SHRINKING_SECONDS), "--fail-fast")
         rows = rows_in(report, done)
         found = failed(rows)
@@ -202,14 +114,14 @@ def watch(one, sizes, is_over):
 
 
 def sound_one(device):
-    with hosted(device) as one:
+    with hosted(ARMJIG, device) as one:
         sizes, is_over = [], threading.Event()
         watching = threading.Thread(target=watch, args=(one, sizes, is_over))
         watching.start()
         report = one.folder / "report.json"
         # A program that is started again does not grow.
         restart = ["--restart", one.restart] if DEVICES[device][1] else []
-        done = one.campaign(report, *restart, *known_of(device), "--max-time", str(SOUND_SECONDS))
+        done = campaign(one, report, *restart, *known_of(device), "--max-time", str(SOUND_SECONDS))
         is_over.set()
         watching.join()
         found = failed(rows_in(report, done))
@@ -222,9 +134,9 @@ def sound_one(device):
 
 
 def known_one(device):
-    with hosted(device) as one:
+    with hosted(ARMJIG, device) as one:
         report = one.folder / "report.json"
-        done = one.campaign(report, "--restart", one.restart, "--max-time", str(KNOWN_SECONDS))
+        done = campaign(one, report, "--restart", one.restart, "--max-time", str(KNOWN_SECONDS))
         found = failed(rows_in(report, done))
         print(f"{device}: {len(found)} findings without what is known; {load()}", flush=True)
         for row in found:
@@ -236,12 +148,6 @@ def side_by_side(what):
     devices = [device for device in DEVICES if is_chosen(device)]
     with concurrent.futures.ThreadPoolExecutor(len(devices)) as pool:
         return [trouble for troubles in pool.map(what, devices) for trouble in troubles]
-
-
-def come_first():
-    """On a machine that is busy with other things, if that is permitted."""
-    with contextlib.suppress(PermissionError):
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
 
 
 def unknown():

@@ -131,3 +131,8 @@ foreach(what rare sound known)
                    ${PROJECT_SOURCE_DIR} ${what})
   set_tests_properties(soak.live_fuzz.${what} PROPERTIES LABELS soak TIMEOUT 7200 RUN_SERIAL TRUE)
 endforeach()
+
+# Hours: whole suites with hands and restarts accuse no sound device, beside busy loops either.
+add_test(NAME soak.verdicts COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/verdicts_soak.py
+                                    $<TARGET_FILE:armjig>)
+set_tests_properties(soak.verdicts PROPERTIES LABELS soak TIMEOUT 86400 RUN_SERIAL TRUE)

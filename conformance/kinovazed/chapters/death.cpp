@@ -83,16 +83,34 @@ void reset_waiting(ServerBench& server) {
   server.pause(300ms);
 }
 
-/// A client that does not wait for its answers.
+/// A client that does not wait for its answers, and the next one.
 template <void (ServerBench::*end)()>
-void end_at_freeze(ServerBench& server) {
-  server.spoil();
+void end_behind(ServerBench& server, std::string_view lines) {
   server.begin_race();
-  server.send("Freeze\r\nUnfreeze\r\n");
+  server.send(lines);
   (server.*end)();
   server.as(1);
   server.pause(300ms);
   server.connect();
+}
+
+template <void (ServerBench::*end)()>
+void end_at_freeze(ServerBench& server) {
+  server.spoil();
+  end_behind<end>(server, "Freeze\r\nUnfreeze\r\n");
+}
+
+constexpr char kFreeze[] = "Freeze\r\n";
+
+/// Each is refused, and no event follows.
+constexpr char kRefused[] = "QuitEStop\r\nQuitEStop\r\nQuitEStop\r\n";
+
+/// Behind a beat, so that none waits among the answers.
+template <const char* lines, void (ServerBench::*end)()>
+void ends_harmlessly(ServerBench& server) {
+  server.await_beat();
+  end_behind<end>(server, lines);
+  expect_lives(server);
 }
 
 /// Where the hand has to be so that the second way-point of PullDoor, (-0.45, -0.08, -0.272) in its
@@ -371,6 +389,23 @@ constexpr Clause kDeathClauses[] = {
         dies("The next client hears nothing.", on<hangs<end_at_freeze<&ServerBench::throw_away>>>)),
     variant("closed",
             dies("The next client hears nothing.", on<hangs<end_at_freeze<&ServerBench::leave>>>)),
+    variant("half-closed", dies("The next client hears nothing.",
+                                on<hangs<end_at_freeze<&ServerBench::finish_sending>>>)),
+
+    must(
+        "kinovazed.death.not-mute",
+        "One message behind the one that fails does not mute it, nor do lines of one message each: "
+        "a lone Freeze, or refused lines, with a close or a half-close are harmless.",
+        "server; reference 4.6"),
+    in(kIdle, "Freeze and a close: EStop of the next client is answered.",
+       on<ends_harmlessly<kFreeze, &ServerBench::leave>>),
+    variant("half-closed", in(kIdle, "Freeze and a half-close: EStop of the next is answered.",
+                              on<ends_harmlessly<kFreeze, &ServerBench::finish_sending>>)),
+    variant("lines", in(kIdle, "Three lines and a close: EStop of the next is answered.",
+                        on<ends_harmlessly<kRefused, &ServerBench::leave>>)),
+    variant("lines.half-closed",
+            in(kIdle, "Three lines and a half-close: EStop of the next is answered.",
+               on<ends_harmlessly<kRefused, &ServerBench::finish_sending>>)),
 
     should("kinovazed.death.no-mute", "Freeze and the end of a connection do no harm.",
            "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.mute"),

@@ -145,6 +145,21 @@ void expect_current(ServerBench& server, const Place& place, const Place& target
   }
 }
 
+/// Nothing but steering between two of Current.
+void expect_current_behind_steering(ServerBench& server) {
+  for (const auto* const way : {"MoveJoystick:0:0:400", "MoveJoystick:400:0:0"}) {
+    const auto usual = time_of(server, "Current");
+    server.about("Current");
+    expect_time(server, usual, 0ms, 500ms + server.noise());
+    server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+    server.accept(way);
+    server.pause(2s);
+    server.accept("MoveJoystick:0:0:0");
+  }
+  server.about("Current behind steering");
+  expect_time(server, time_of(server, "Current"), 0ms, 500ms + server.noise());
+}
+
 constexpr Clause kObjectiveClauses[] = {
     must("kinovazed.objective.current",
          "Current is done at once, for it moves to where the arm is.",
@@ -157,6 +172,9 @@ constexpr Clause kObjectiveClauses[] = {
            expect_time(server, time_of(server, "Current"), 0ms, 500ms + server.noise());
          }
        }),
+
+    variant("steered", in(kIdle, "Within half a second, after steering and no other objective.",
+                          on<expect_current_behind_steering>)),
 
     must("kinovazed.objective.home", "Home runs and is done.",
          "document; server, recording objectives-absolute"),

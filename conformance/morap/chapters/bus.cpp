@@ -12,6 +12,25 @@ void choose_status_at(NodeBench& node, BusAddress other) {
   std::ignore = node.write(other, std::vector{static_cast<std::byte>(kReadMotorStatus)});
 }
 
+/// Whether it is this node that answers there. Another one may be there, and happen to say the same
+/// once, but it does not choose what this one is told to choose.
+bool answers_at(NodeBench& node, BusAddress other) {
+  for (const auto selector : {kReadAddress, kReadMotorStatus}) {
+    const auto own = node.read(selector, 1);
+    if (node.BusBench::read(other, 1) != own) return false;
+  }
+  return true;
+}
+
+void expect_all_bits_compared(NodeBench& node) {
+  for (unsigned bit = 0; bit < 7; ++bit) {
+    const BusAddress other{static_cast<std::uint8_t>(node.address().value ^ (1U << bit))};
+    if (answers_at(node, other)) {
+      node.fail(fmt::format("no answer of this node at {:02X}", other.value), "one");
+    }
+  }
+}
+
 /// How much longer a transaction takes than its bits at 100 kHz. In virtual time the first try
 /// counts; in real time the best of some, for it may have been the machine that had no time.
 template <class Transaction>
@@ -75,6 +94,8 @@ constexpr Clause kBusClauses[] = {
            choose_status_at(node, {static_cast<std::uint8_t>(node.address().value ^ 0x40U)});
            expect_own_address(node);
          }),
+    variant("each",
+            look("It does not answer where one bit differs.", on<expect_all_bits_compared>)),
 
     must("morap.bus.acknowledges", "A node acknowledges every byte of a command.",
          "firmware: its hardware does"),

@@ -197,6 +197,65 @@ void goes_on_when_enabled_again(NodeBench& node) {
   node.expect_levels_at_ticks({12, 16});
 }
 
+/// What a running loop does not mind: its shaft stands at 0, or hardly matters to it.
+void goes_on_whatever_else(NodeBench& node) {
+  run_integrator(node);
+  node.expect_levels_at_ticks({4});
+  node.send(kCalibrateZero);
+  node.expect_levels_at_ticks({8});
+  node.send(kCalibrateAngle, 0.0F);
+  node.expect_levels_at_ticks({12});
+  node.send(kBrake14);
+  node.send(kBrake15);
+  node.expect_levels_at_ticks({16});
+  node.send_bytes("20 00 C8 00 05");  // refused
+  node.send_bytes("06");              // means nothing
+  node.expect_levels_at_ticks({20});
+}
+
+/// An integrator has run. In a position mode without calibration the time between ticks is that of
+/// its loop, and calibrating lets it run.
+void latch_position(NodeBench& node, float reference) {
+  node.send(kCalibrationUnknown);
+  node.tick(kIdleRateHz);
+  node.send(kPosition, reference);
+  node.tick(node.loop_rate());
+}
+
+void begins_anew_behind_calibration(NodeBench& node) {
+  run_integrator(node);
+  node.expect_levels_at_ticks({4, 8});
+  latch_position(node, kFar);
+  node.send(kCalibrateZero);
+  node.tick();
+  node.expect_levels(0);
+  node.expect_levels_at_ticks({4, 8});
+}
+
+void begins_with_latest_reference(NodeBench& node) {
+  run_loop(node, blind_set(node, {1.0F, 2.0F}, {0.0F}), 0.75F);
+  node.tick();
+  latch_position(node, 0.5F);
+  node.send(kPosition, 0.25F);
+  node.send(kCalibrateZero);
+  node.tick();
+  node.expect_levels_at_ticks({16, 16});
+}
+
+/// Where the shaft is counts half as much as the reference, and both are integrated.
+void holds_both_integrators(NodeBench& node) {
+  // 10.5 V: below the limit of the output, so that the current alone limits it
+  node.send(blind_set(node, {0.14F}, {0.0F}, 0.005F));
+  node.send(kCalibrateAngle, kFar / 2);
+  node.tick();
+  node.send(kPosition, kFar);
+  node.tick(node.loop_rate());
+  node.expect_levels_at_ticks({node.motor().standstill_levels});
+  node.send(kPosition, 0.0F);
+  node.tick();                       // by then a shaft that may turns
+  node.expect_levels_at_ticks({4});  // 8 and -4, of the first sample only
+}
+
 template <int sign>
 void limits_at_first(NodeBench& node) {
   run_loop(node, proportional(node.loop_rate(), 10.0F), static_cast<float>(sign) * 0.5F);
@@ -345,6 +404,8 @@ constexpr Clause kLoopClauses[] = {
               node.tick();  // by then the shaft turns
               node.expect_levels_at_ticks({8, 8});
             })),
+    variant("both", loop("Of the reference and of the angle.", on<holds_both_integrators>)),
+    variant("slowly.both", slowly(on<holds_both_integrators>)),
 
     must("morap.loop.current-limit",
          "At standstill a loop is limited to the voltage of the rated current, both ways.",
@@ -430,6 +491,23 @@ constexpr Clause kLoopClauses[] = {
          "recording static-reenable-within-tick", Profiles::kFirmware),
     loop("An integrator.", on<goes_on_when_enabled_again>),
     variant("slowly", slowly(on<goes_on_when_enabled_again>)),
+
+    must(
+        "morap.loop.else-goes-on",
+        "Calibrating, the brake, refused parameters and unknown identifiers do not begin a running "
+        "loop anew.",
+        "firmware, tick; recording loop-calibrate-moving", Profiles::kFirmware),
+    loop("An integrator.", on<goes_on_whatever_else>),
+    variant("slowly", slowly(on<goes_on_whatever_else>)),
+
+    must("morap.loop.latched-begins-anew",
+         "A loop whose mode came before calibration begins anew with it.",
+         "firmware, tick: the reset waits; recording loop-uncalibrated", Profiles::kFirmware),
+    loop("An integrator that has run before.", on<begins_anew_behind_calibration>),
+    variant("slowly", slowly(on<begins_anew_behind_calibration>)),
+    variant("reference",
+            loop("With the reference of that time.", on<begins_with_latest_reference>)),
+    variant("slowly.reference", slowly(on<begins_with_latest_reference>)),
 };
 
 }  // namespace

@@ -58,6 +58,16 @@ void expect_failure_then_success(NodeBench& node, std::string_view wrong_checksu
   node.expect_programming(kSuccess);
 }
 
+void expect_no_other_checksum(NodeBench& node) {
+  for (int checksum = 0; checksum < 256; ++checksum) {
+    const auto text = fmt::format(" {:02X}", checksum);
+    if (text == kGoodSum) continue;
+    node.about(fmt::format("checksum{}", text));
+    program(node, kGood, text);
+    node.expect_programming(kFailure);
+  }
+}
+
 /// Programmed, then loaded again.
 void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
   const auto before = node.read(selector, 31);
@@ -315,6 +325,7 @@ constexpr Clause kProgramClauses[] = {
                   program(node, kGood, " A8");
                   node.expect_programming(kFailure);
                 }),
+    variant("any", programming("All but the right one.", on<expect_no_other_checksum>)),
 
     must("morap.checksum.wrong-unused", "Parameters with a wrong checksum are not used.",
          "vector 31", Profiles::kFirmware),

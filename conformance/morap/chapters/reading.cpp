@@ -57,6 +57,42 @@ constexpr Clause kReadingClauses[] = {
            for (int i = 0; i < 4; ++i) node.expect_read_on("00 00 40 3F");
          }),
 
+    must("morap.read.fresh",
+         "What is read is what is so by then, whatever it was when it was chosen or last read.",
+         "firmware, reading; recording static-readmode-latch"),
+    variant("reference", from(kUncalibrated, Hazard::kState,
+                              "One choice, and another speed reference before each read.",
+                              [](NodeBench& node) {
+                                node.send(kReadSpeedReference);
+                                for (const auto* const bits :
+                                     {"00 00 40 3F", "CD CC 4C 3E", "B8 1E 05 BF"}) {
+                                  node.send_bytes(std::string{"02 "} + bits);
+                                  node.expect_read_on(bits);
+                                }
+                              })),
+    variant("status", from(kUncalibrated, Hazard::kState,
+                           "One choice, and commands that change the motor status.",
+                           [](NodeBench& node) {
+                             node.send(kReadMotorStatus);
+                             node.expect_read_on("03");
+                             node.send(kCalibrateZero);
+                             node.expect_read_on("02");
+                             node.send(kVoltage, 0.0F);
+                             node.expect_read_on("01");
+                             node.send(kCalibrationUnknown);
+                             node.expect_read_on("03");
+                           })),
+    variant("angle",
+            from(kFresh, Hazard::kState, "One choice, then commands and turns of the shaft.",
+                 [](NodeBench& node) {
+                   const auto turned = turned_angle(node);
+                   node.send(kCalibrateZero);
+                   node.expect_read_on("00 00 00 00");
+                   node.turn(1000);
+                   node.send(kDisable);
+                   node.expect_same(node.read_on(4), turned);
+                 })),
+
     must("morap.read.mode-over-commands", "Commands do not change what is chosen.",
          "recording static-readmode-latch"),
     from(kUncalibrated, Hazard::kState, "The status is chosen, then commands of all sorts.",
@@ -68,6 +104,22 @@ constexpr Clause kReadingClauses[] = {
            node.send(kCalibrationUnknown);
            node.expect_read_on("03");
          }),
+    variant("parameters",
+            from(kProgrammable, Hazard::kProgram,
+                 "The status is chosen, then a refused message, a tuning and the stored ones.",
+                 [](NodeBench& node) {
+                   node.send(kReadMotorStatus);
+                   for (const auto* const message :
+                        {"20 00 C8 00 05", "20 00 C8 00", "22 00 CD CC 4C 3E 00 00 10 C1", "21"}) {
+                     node.about(fmt::format("behind {}", message));
+                     node.send_bytes(message);
+                     node.expect_read_on("02");
+                   }
+                   node.about("behind a message that is taken, when it is in use");
+                   node.send(proportional(kIdleRateHz, 1.0F));
+                   node.settle();
+                   node.expect_read_on("02");
+                 })),
 
     must("morap.read.mode-over-brake", "The brake commands do not change what is chosen.",
          "firmware"),

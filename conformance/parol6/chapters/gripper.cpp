@@ -134,6 +134,21 @@ void expect_asleep(BoardBench& board, std::uint8_t command) {
   expect_stands(board, set_point);
 }
 
+/// Ends a calibration when it is on its way to the closed end, and begins another one.
+void calibrate_twice(BoardBench& board) {
+  constexpr int kClosing = 120;
+  const GripperSetPoint calibrate{.mode = gripper_mode::kCalibrate};
+  prepare(board, 60);
+  board.act(with_gripper(calibrate));
+  const auto closes = [](const Answer& answer) { return answer.gripper.position > kClosing; };
+  board.about("a calibration that closes");
+  if (!board.ask_until(idle(), closes, 35s)) {
+    board.fail(fmt::format("gripper.position above {} within 35 s", kClosing), "never");
+  }
+  board.act(with_gripper({.mode = gripper_mode::kClearError}));
+  board.act(with_gripper(calibrate));
+}
+
 constexpr Case grip(std::string_view rule, CaseBody run, Tier tier = Tier::kQuick) {
   auto one = from(kEnabled, Hazard::kGrip, rule, run);
   one.tier = tier;
@@ -267,6 +282,22 @@ constexpr Clause kGripperClauses[] = {
           board.about("a calibration that has just begun");
           board.expect_bits(board.ask(idle()), "gripper.status", gripper_status::kCalibrated, 0);
           board.about("a calibration");
+          board.expect_true(board.ask_until(idle(), is_calibrated, 35s).has_value(),
+                            "gripper.status with bit 01 within 35 s", "never");
+        },
+        kFull),
+
+    must("parol6.gripper.calibrates-anew",
+         "A calibration opens the gripper first, also behind one that was ended when it closed.",
+         "gripper"),
+    grip(
+        "The second one comes to the open end, and is done.",
+        [](BoardBench& board) {
+          calibrate_twice(board);
+          const auto is_open = [](const Answer& answer) { return answer.gripper.position <= 2; };
+          board.about("a calibration behind one that was ended");
+          board.expect_true(board.ask_until(idle(), is_open, kWholeWay).has_value(),
+                            "gripper.position of 2 at most within 2.5 s", "never");
           board.expect_true(board.ask_until(idle(), is_calibrated, 35s).has_value(),
                             "gripper.status with bit 01 within 35 s", "never");
         },

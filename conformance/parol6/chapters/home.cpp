@@ -216,9 +216,7 @@ constexpr Clause kHomeClauses[] = {
     from(kEnabled, Hazard::kHome, "Idle does not resume homing after a go-to.",
          [](BoardBench& board) {
            begin_homing(board, kSomeSeeking);
-           board.act(with_code(42));
-           const auto rest = board.ask(with_code(42));
-           board.act(go_to(rest.position));
+           board.act(go_to(rest_in_homing(board).position));
            board.act(idle());
            board.about("homing, then a go-to, then idle");
            expect_still(board, idle(), 150ms);
@@ -227,8 +225,7 @@ constexpr Clause kHomeClauses[] = {
     variant("goes", from(kHomed, Hazard::kHome, "A go-to in homing arrives.",
                          [](BoardBench& board) {
                            begin_homing(board, 100ms);
-                           board.act(with_code(42));
-                           const auto rest = board.ask(with_code(42));
+                           const auto rest = rest_in_homing(board);
                            board.about("a go-to in homing");
                            board.keep_asking(go_to(beside(rest, 4, 50)), 300ms);
                            const auto answer = board.ask(go_to(beside(rest, 4, 50)));

@@ -58,6 +58,28 @@ Answer reported(BoardBench& board, const Speeds& speeds) {
   return answer;
 }
 
+/// While homing is under way speeds in idle frames are ignored (parol6.home.idle-speeds-ignored).
+void expect_speeds_behind(BoardBench& board, const CommandFrame& end) {
+  board.act(end);
+  const auto frame = with_speeds(255, kIdleSpeeds);
+  board.act(frame);
+  board.about(fmt::format("homing, then code {}, then idle", static_cast<int>(end.command)));
+  expect_reported(board, board.ask(frame), kIdleSpeeds);
+  board.act(idle());
+  board.act(with_code(kEnable));
+}
+
+void expect_speeds_behind_each_end(BoardBench& board) {
+  constexpr Duration kUnderWay = 50ms;
+  for (const auto& end :
+       {with_code(kEnable), with_code(kDisable), with_code(kClearError), jog({})}) {
+    begin_homing(board, kUnderWay);
+    expect_speeds_behind(board, end);
+  }
+  begin_homing(board, kUnderWay);
+  expect_speeds_behind(board, go_to(rest_in_homing(board).position));
+}
+
 constexpr Clause kTelemetryClauses[] = {
     must("parol6.telemetry.layout",
          "Telemetry is 60 bytes that begin with FF FF FF 38 and end with 01 02.",
@@ -403,6 +425,10 @@ constexpr Clause kTelemetryClauses[] = {
                                         expect_reported(board, board.ask(frame), kIdleSpeeds);
                                         board.act(idle());
                                       }))),
+    variant("after-ended-homing",
+            from(kEnabled, Hazard::kHome,
+                 "They come back after enable, disable, clear error, a jog or a go-to in homing.",
+                 on<expect_speeds_behind_each_end>)),
 
     must("parol6.telemetry.idle-reports-zero",
          "While the board idles telemetry reports speed 0, whatever speeds the frame has.",

@@ -322,6 +322,34 @@ TEST(Parol6Judge, GoToNeedsAHomedArm) {
   EXPECT_FALSE(court.judge(go_to(kMiddle)));
 }
 
+TEST(Parol6Judge, AGoToToWhereAnArmStandsMayEndHoming) {
+  const auto here = unhomed(Command::kIdle).position;
+  auto beside = here;
+  beside[2] = beside[2] + Steps{1};
+  auto with_speed = go_to(here);
+  with_speed.speed[4] = StepsPerSecond{1};
+
+  Court unhomed_arm{Permissions::all()};
+  unhomed_arm.answer(unhomed(Command::kIdle));
+  unhomed_arm.answer(unhomed(Command::kIdle));
+  EXPECT_TRUE(unhomed_arm.judge(go_to(here))) << "nothing is to be ended";
+
+  Court court{Permissions::all()};
+  ASSERT_FALSE(court.judge(Command::kHome));
+  auto moving = unhomed(Command::kHome);
+  moving.position = beside;
+  court.answer(moving);
+  court.answer(unhomed(Command::kHome));
+  EXPECT_TRUE(court.judge(go_to(here))) << "it moves";
+  court.answer(unhomed(Command::kHome));
+  EXPECT_TRUE(court.judge(go_to(beside)));
+  EXPECT_TRUE(court.judge(with_speed));
+  ASSERT_FALSE(court.judge(Command::kIdle));
+  EXPECT_TRUE(court.judge(go_to(here))) << "it may be elsewhere by now";
+  court.answer(unhomed(Command::kIdle));
+  EXPECT_FALSE(court.judge(go_to(here)));
+}
+
 TEST(Parol6Judge, GoToStaysBetweenTheBoundsOfEachJoint) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     for (const auto& [bound, outwards] :
