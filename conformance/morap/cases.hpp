@@ -59,6 +59,15 @@ inline void run_slow_loop(NodeBench& node) {
   node.tick();
 }
 
+/// Behind the tick that ended a slow loop: what comes now is done at once, for ticks are near.
+inline void expect_near_ticks(NodeBench& node) {
+  node.settle();
+  node.send(kVoltage, 0.75F);
+  node.settle();
+  node.expect_levels(16);
+  node.send(kDisable);
+}
+
 /// On any node, with voltages that do its shaft no harm.
 constexpr Case slowly(CaseBody run) { return from(kSlow, Hazard::kProgram, run); }
 

@@ -67,10 +67,8 @@ struct Push {
   Duration time;
 };
 
-/// Leads the arm away from Home by some deflections, one after the other.
-void push_from_home(ServerBench& server, std::string_view mode,
-                    std::initializer_list<Push> pushes) {
-  (void)time_of(server, "Home");
+/// Leads the arm away by some deflections, one after the other.
+void push_in(ServerBench& server, std::string_view mode, std::initializer_list<Push> pushes) {
   server.perform("SetJoystickMode:" + std::string{mode}, Event::kJoystickModeSet);
   for (const auto& [axis, number, time] : pushes) {
     server.accept(deflection(axis, number));
@@ -79,10 +77,31 @@ void push_from_home(ServerBench& server, std::string_view mode,
   server.accept(kStop);
 }
 
+void push_from_home(ServerBench& server, std::string_view mode,
+                    std::initializer_list<Push> pushes) {
+  (void)time_of(server, "Home");
+  push_in(server, mode, pushes);
+}
+
 /// The way back to Home behind some deflections.
 Duration way_back(ServerBench& server, std::string_view mode, std::initializer_list<Push> pushes) {
   push_from_home(server, mode, pushes);
   return time_of(server, "Home");
+}
+
+/// A push of Axis4to6 leads as far away whether another mode was set before or not.
+void expect_own_axes(ServerBench& server) {
+  constexpr Push kThird{2, 400, kPush};
+  const auto of_other = way_back(server, kXyz, {kThird});
+  const auto own = way_back(server, kAxis4to6, {kThird});
+  (void)time_of(server, "Home");
+  server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+  push_in(server, kAxis4to6, {kThird});
+  const auto behind = time_of(server, "Home");
+  const auto apart = std::max(own, of_other) - std::min(own, of_other);
+  if (apart < kAway) return server.leave_open("this arm is as fast back from both");
+  server.about("how much farther a push of Axis4to6 leads behind XYZ");
+  expect_time(server, behind - own, -apart / 2, apart / 2);
 }
 
 /// Each axis leads away, and only its own opposite leads back.
@@ -218,6 +237,17 @@ constexpr Clause kJoystickClauses[] = {
          "server, transcript T21"),
     in(kIdle, "Within 0.4 s, and beat 21.", on<no_mode>),
 
+    must("kinovazed.mode.no-mode-running",
+         "NoMode ends an objective that runs: it is confirmed, and idle follows.",
+         "server; reference 6.3"),
+    in(kRunningSequence, "JoystickModeSet, beat 21, and no ObjectiveDone.",
+       [](ServerBench& server) {
+         enter(server, kRunningSequence);
+         server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
+         server.expect_beat(21);
+         server.expect_quiet(3s);
+       }),
+
     must("kinovazed.mode.xyz", "Mode XYZ can be set and steered in.",
          "document; server, recording session-joystick-modes"),
     in(kIdle, "A move is Accepted, and beat 69.", on<set<kXyz>>),
@@ -327,6 +357,11 @@ constexpr Clause kJoystickClauses[] = {
                       on<three_axes<kXyz>>)),
     variant("rotation", in(kIdle, "There and back on each axis, and not back by another.",
                            on<three_axes<kRotation>>)),
+
+    must("kinovazed.joystick.own-axes",
+         "A mode has its own axes also right behind another one, with no NoMode between.",
+         "server; reference 8.2"),
+    in(kIdle, "The third of Axis4to6 behind XYZ leads as far as without.", on<expect_own_axes>),
 
     must("kinovazed.joystick.signs",
          "In mode XYZ positive numbers lead the hand up, to the right and to the front, which is "

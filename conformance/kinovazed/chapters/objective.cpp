@@ -160,6 +160,27 @@ void expect_current_behind_steering(ServerBench& server) {
   expect_time(server, time_of(server, "Current"), 0ms, 500ms + server.noise());
 }
 
+/// Antenna from its own end leads as far to its first point as from there back. Asked for again in
+/// the middle of the way back, it has a quarter of the whole to the first point, and the way back.
+void expect_begun_anew(ServerBench& server) {
+  run(server, "Antenna");
+  const auto whole = time_of(server, "Antenna");
+  server.accept("RunObjective:Antenna");
+  server.pause(whole * 3 / 4);
+  const auto again = time_of(server, "Antenna");
+  server.about("Antenna, asked for again on the way to its second point");
+  expect_time(server, again, whole / 2 - server.noise(), 2 * ServerBench::kMotionTime);
+}
+
+/// A relative objective has moved the hand away from where it began.
+void expect_current_in_the_middle(ServerBench& server) {
+  run(server, "Handle");
+  server.accept("RunObjective:OpenDoor");
+  server.pause(1500ms);
+  server.about("Current in the middle of OpenDoor");
+  expect_time(server, time_of(server, "Current"), 0ms, 500ms + server.noise());
+}
+
 constexpr Clause kObjectiveClauses[] = {
     must("kinovazed.objective.current",
          "Current is done at once, for it moves to where the arm is.",
@@ -175,6 +196,14 @@ constexpr Clause kObjectiveClauses[] = {
 
     variant("steered", in(kIdle, "Within half a second, after steering and no other objective.",
                           on<expect_current_behind_steering>)),
+
+    variant("in-another", in(kIdle, "Within half a second, in the middle of OpenDoor.",
+                             on<expect_current_in_the_middle>)),
+
+    must("kinovazed.objective.begun-anew",
+         "An objective that is asked for again while it runs begins at its first way-point.",
+         "server; reference 9.2"),
+    in(kIdle, "Antenna, on the way to its second point.", on<expect_begun_anew>),
 
     must("kinovazed.objective.home", "Home runs and is done.",
          "document; server, recording objectives-absolute"),

@@ -242,6 +242,16 @@ void begins_with_latest_reference(NodeBench& node) {
   node.expect_levels_at_ticks({16, 16});
 }
 
+template <int sign>
+void holds_integrator(NodeBench& node) {
+  // 10.5 V: below the limit of the output, so that the current alone limits it
+  run_loop(node, blind_set(node, {0.14F}, {0.0F}, 0.005F), sign * kFar);
+  node.expect_levels_at_ticks({sign * node.motor().standstill_levels});
+  node.send(kPosition, 0.0F);
+  node.tick();  // by then a shaft that may turns
+  node.expect_levels_at_ticks({sign * 8, sign * 8});
+}
+
 /// Where the shaft is counts half as much as the reference, and both are integrated.
 void holds_both_integrators(NodeBench& node) {
   // 10.5 V: below the limit of the output, so that the current alone limits it
@@ -396,14 +406,8 @@ constexpr Clause kLoopClauses[] = {
            node.send(kPosition, 0.0F);
            node.expect_levels_at_ticks({most, 8, 8});  // of the first sample only
          }),
-    variant("slowly", slowly([](NodeBench& node) {
-              // 10.5 V: below the limit of the output, so that the current alone limits it
-              run_loop(node, blind_set(node, {0.14F}, {0.0F}, 0.005F), kFar);
-              node.expect_levels_at_ticks({node.motor().standstill_levels});
-              node.send(kPosition, 0.0F);
-              node.tick();  // by then the shaft turns
-              node.expect_levels_at_ticks({8, 8});
-            })),
+    variant("slowly", slowly(on<holds_integrator<1>>)),
+    variant("slowly.negative", slowly(on<holds_integrator<-1>>)),
     variant("both", loop("Of the reference and of the angle.", on<holds_both_integrators>)),
     variant("slowly.both", slowly(on<holds_both_integrators>)),
 

@@ -136,6 +136,15 @@ void drive_at_rest(NodeBench& node) {
 
 constexpr Case at_rest(CaseBody run) { return from(kFree, Hazard::kMove, run); }
 
+/// At 0, so that nothing turns.
+template <CommandId mode>
+void comes_back_to_idle(NodeBench& node) {
+  run_loop(node, proportional(node.loop_rate(), 1.0F), 0.0F);
+  node.send(mode, 0.0F);
+  node.tick(kIdleRateHz);
+  expect_near_ticks(node);
+}
+
 constexpr Clause kOutputClauses[] = {
     must("morap.voltage.close", "A drive voltage inside the limits is applied to within 0.05 V.",
          "document, applied voltage; firmware: a step is 0.046875 V"),
@@ -454,6 +463,13 @@ constexpr Clause kOutputClauses[] = {
             node.ticks(20);
             expect_voltage_at_tick(node);
           }),
+    variant("slowly", slowly(on<comes_back_to_idle<kVoltage>>)),
+
+    must("morap.tick.back-to-idle-any",
+         "The idle rate comes back with a direct voltage or a torque, too.", "firmware, tick",
+         Profiles::kFirmware),
+    variant("direct", slowly(on<comes_back_to_idle<kDirectVoltage>>)),
+    variant("torque", slowly(on<comes_back_to_idle<kTorque>>)),
 };
 
 }  // namespace

@@ -548,6 +548,16 @@ constexpr Clause kProgramClauses[] = {
               node.tick(kIdleRateHz);
               node.expect_same(node.read(kReadSpeedSet, 4), before);
             })),
+
+    must("morap.defaults.running", "A loop that runs goes on at the rate of its stored controller.",
+         "firmware, identifier 33 and tick", Profiles::kFirmware),
+    slowly([](NodeBench& node) {
+      // At its reference, so that nothing turns, whichever controller has it.
+      run_loop(node, proportional(node.loop_rate(), 1.0F), 0.0F);
+      node.send(kDefaultControllers);
+      node.tick(kIdleRateHz);
+      expect_near_ticks(node);
+    }),
 };
 
 }  // namespace

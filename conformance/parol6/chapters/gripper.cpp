@@ -356,6 +356,18 @@ constexpr Clause kGripperClauses[] = {
         },
         kFull),
 
+    must("parol6.gripper.change-of-id",
+         "A changed gripper id sends the set-points, which another node had before.", "firmware"),
+    grip(
+        "What went to node 3 moves node 0 when that is named.",
+        [](BoardBench& board) {
+          prepare(board, 60);
+          board.act(with_gripper(elsewhere(3)));
+          board.about("the set-points of node 3, for node 0");
+          expect_at(board, board.keep_asking(with_gripper(elsewhere(0)), kWholeWay), 160);
+        },
+        kFull),
+
     must("parol6.gripper.clear-mode", "Mode 2 takes the stop error of the gripper back.",
          "document, gripper; firmware; gripper"),
     grip(

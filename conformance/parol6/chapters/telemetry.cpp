@@ -63,10 +63,17 @@ void expect_speeds_behind(BoardBench& board, const CommandFrame& end) {
   board.act(end);
   const auto frame = with_speeds(255, kIdleSpeeds);
   board.act(frame);
-  board.about(fmt::format("homing, then code {}, then idle", static_cast<int>(end.command)));
+  board.about(fmt::format("home, then code {}, then idle", static_cast<int>(end.command)));
   expect_reported(board, board.ask(frame), kIdleSpeeds);
   board.act(idle());
   board.act(with_code(kEnable));
+}
+
+/// A disabled board does not take it (parol6.command.disabled-home), and homes no arm later.
+void expect_speeds_behind_refused_home(BoardBench& board) {
+  board.act(with_code(kDisable));
+  board.act(with_code(Command::kHome));
+  expect_speeds_behind(board, idle());
 }
 
 void expect_speeds_behind_each_end(BoardBench& board) {
@@ -293,6 +300,14 @@ constexpr Clause kTelemetryClauses[] = {
                                }
                              })),
 
+    /// Which is any number, as power-up and the first frame are any time apart.
+    variant("first", from(kFresh, Hazard::kObserve, "The first interval is not 0.",
+                          [](BoardBench& board) {
+                            const double ticks = board.ask(idle()).timing;
+                            board.expect_in_time({ticks, 1, 65'535, "ticks"}, "timing above 0",
+                                                 fmt::format("{} ticks", ticks));
+                          })),
+
     must("parol6.telemetry.timing-wraps",
          "The timing field counts modulo 65536: a gap of 100 ms reads 4776 or 4777.",
          "document, 16-bit timer; arithmetic"),
@@ -429,6 +444,9 @@ constexpr Clause kTelemetryClauses[] = {
             from(kEnabled, Hazard::kHome,
                  "They come back after enable, disable, clear error, a jog or a go-to in homing.",
                  on<expect_speeds_behind_each_end>)),
+    variant("after-refused-home",
+            from(kEnabled, Hazard::kHome, "They come back after a home command while disabled.",
+                 on<expect_speeds_behind_refused_home>)),
 
     must("parol6.telemetry.idle-reports-zero",
          "While the board idles telemetry reports speed 0, whatever speeds the frame has.",
