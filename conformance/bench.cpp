@@ -86,6 +86,7 @@ void Bench::decide(Judgement judgement) {
   if (is_over_) return;
   is_over_ = true;
   judgement_ = std::move(judgement);
+  judgement_.is_race = is_race_;
   if (is_race_ && judgement_.verdict == Verdict::kFail) judgement_.is_timing = true;
 }
 

@@ -30,6 +30,7 @@ struct Judgement {
   std::optional<std::size_t> byte{};
   bool is_left_out = false;  ///< skipped because link or hands do not reach as far
   bool is_timing = false;    ///< about when something came, which link and machine have a part in
+  bool is_race = false;      ///< behind `Bench::begin_race`
   std::string margin{};      ///< what was measured nearest to a bound, and its bounds
 };
 

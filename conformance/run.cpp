@@ -254,11 +254,12 @@ class Run {
     return finding;
   }
 
-  /// A moment that was missed twice. On a busy machine it has to be missed again beside each
-  /// emulated device that is in time.
+  /// A moment that was missed twice. In a race, which chance may decide, and on a busy machine it
+  /// has to be missed again beside each emulated device that is in time.
   Finding doubt_moment(const Case& one, Finding finding) {
+    const bool is_race = finding.judgement.is_race;
     const bool is_busy = options_.is_busy && options_.is_busy();
-    if (!is_busy) return doubt(one, std::move(finding), kReferences);
+    if (!is_race && !is_busy) return doubt(one, std::move(finding), kReferences);
     for (int i = 0; i < kReferences; ++i) {
       finding = doubt(one, std::move(finding), 1);
       if (finding.judgement.verdict != Verdict::kFail) return finding;
@@ -268,8 +269,8 @@ class Run {
       finding.judgement = {
           Verdict::kInconclusive,
           {},
-          fmt::format("{} times {}; then otherwise, on a machine that has too much to do", 2 + i,
-                      wording_of(finding.judgement))};
+          fmt::format("{} times {}; then otherwise, {}", 2 + i, wording_of(finding.judgement),
+                      is_race ? "in a race" : "on a machine that has too much to do")};
       return finding;
     }
     return finding;
