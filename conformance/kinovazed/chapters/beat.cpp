@@ -22,6 +22,34 @@ void lose_arm(ServerBench& server) {
 
 void find_arm(ServerBench& server) { server.touch("arm.fail.arm_open", 0); }
 
+/// So many moves by nothing in one go, and the answers to all of them.
+void flood(ServerBench& server, std::int64_t lines) {
+  std::string text;
+  for (std::int64_t i = 0; i < lines; ++i) text += "MoveJoystick:0:0:0\r\n";
+  server.send(text);
+  for (std::int64_t i = 0; i < lines && !server.is_over(); ++i) server.expect(Event::kAccepted);
+}
+
+/// Beats among the answers to lines that take two seconds and a half.
+void expect_beats_in_flood(ServerBench& server) {
+  constexpr std::int64_t kFew = 50;
+  constexpr std::int64_t kMost = 8000;
+  const auto begun = server.now();
+  flood(server, kFew);
+  const auto each = std::max<Duration>((server.now() - begun) / kFew, 1us);
+  auto last = server.await_beat().time;
+  flood(server, std::clamp<std::int64_t>(2500ms / each, kFew, kMost));
+  const auto end = server.now();
+  if (end - last < 2 * kBeatPeriod) {
+    return server.leave_open("this server answers thousands of lines within two seconds");
+  }
+  server.about("a beat among the answers to a flood of lines");
+  while (last + kBeatPeriod < end && !server.is_over()) {
+    const auto beat = server.await_beat_behind(last).time;
+    expect_time(server, beat - std::exchange(last, beat), 700ms, 1300ms + server.noise());
+  }
+}
+
 constexpr Clause kBeatClauses[] = {
     must("kinovazed.beat.period", "The next heartbeat comes 1 s after the one before.",
          "server, recording heartbeat-period"),
@@ -96,6 +124,9 @@ constexpr Clause kBeatClauses[] = {
          }
          expect_time(server, last.time - first.time, 2900ms, 3300ms + server.noise());
        }),
+
+    variant("flood", full(in(kSteering, "Nor do moves that wait for two seconds and more.",
+                             on<expect_beats_in_flood>))),
 
     must("kinovazed.beat.stopped", "In emergencyStopped the heartbeat is 3.",
          "document; server, recording heartbeat-values-resting"),

@@ -131,6 +131,17 @@ constexpr Clause kConnectionClauses[] = {
                    server.expect(Event::kAccepted);
                  })),
 
+    variant("many", look("Forty lines of a waiting client are answered.",
+                         [](ServerBench& server) {
+                           constexpr int kLines = 40;
+                           say_while_waiting(server, "EStop");
+                           for (int i = 1; i < kLines; ++i) server.say("EStop");
+                           server.as(0);
+                           server.leave();
+                           server.as(1);
+                           for (int i = 0; i < kLines; ++i) server.expect(Event::kAccepted);
+                         })),
+
     must("kinovazed.connection.waiting-closed",
          "What a waiting client has sent is carried out also if it has closed meanwhile.",
          "server; reference 1.7"),

@@ -309,6 +309,15 @@ constexpr Clause kStateClauses[] = {
          "server, state-command-matrix"),
     quick(in(kRunningSequence, "Accepted, and beat 3.", on<estop<kRunningSequence>>)),
 
+    variant("and-more",
+            quick(in(kRunningSequence, "What is behind it in a segment is answered, too.",
+                     [](ServerBench& server) {
+                       enter(server, kRunningSequence);
+                       server.send("EStop\r\nQuitEStop\r\nEStop\r\n");
+                       for (int i = 0; i < 3; ++i) server.expect(Event::kAccepted);
+                       server.expect_beat(3);
+                     }))),
+
     must("kinovazed.state.running.mode", "In runningSequence SetJoystickMode leads to settingMode.",
          "server, state-command-matrix"),
     in(kRunningSequence, "Beat 5, then JoystickModeSet.",

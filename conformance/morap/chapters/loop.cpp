@@ -182,10 +182,21 @@ void goes_on_with_another_reference(NodeBench& node) {
   node.expect_levels_at_ticks({4, 6, 8});
 }
 
+void speed_goes_on_with_another_reference(NodeBench& node) {
+  auto set = blind_set(node, {0.0F}, {0.0F}, 0.0025F);
+  set.kind = ControllerKind::kSpeed;
+  run_loop(node, set, kFar);
+  node.expect_levels_at_ticks({4, 8});
+  node.send(kSpeed, kFar / 2);
+  node.expect_levels_at_ticks({12, 14, 16});
+}
+
+/// Those of the other controller, whose rate is none of this loop's.
 void begins_anew_with_parameters(NodeBench& node) {
   run_integrator(node);
   node.expect_levels_at_ticks({4, 8});
-  node.send(proportional(node.loop_rate(), 1.0F, ControllerKind::kSpeed));
+  const auto other_rate = static_cast<std::uint16_t>(2 * node.loop_rate());
+  node.send(proportional(other_rate, 1.0F, ControllerKind::kSpeed));
   node.expect_levels_at_ticks({12, 4, 8});
 }
 
@@ -349,6 +360,17 @@ constexpr Clause kLoopClauses[] = {
            node.expect_levels_at_ticks({16, 16, 16});
          }),
 
+    variant("slowly", slowly([](NodeBench& node) {
+              auto set = proportional(node.loop_rate(), 1.0F, ControllerKind::kSpeed);
+              set.d = filter({0.001F});  // 0.375 V, had the shaft come here within a tick
+              node.send(set);
+              node.send(kCalibrateAngle, kFar);
+              node.tick();
+              node.send(kSpeed, 0.75F);
+              node.tick(set.rate_hz);
+              node.expect_levels_at_ticks({16});
+            })),
+
     must("morap.loop.feedback-of-output", "The coefficients of earlier outputs are taken off.",
          "recording static-custom-controller-locked", Profiles::kFirmware),
     loop("-0.5.", on<takes_off_an_output>),
@@ -483,6 +505,9 @@ constexpr Clause kLoopClauses[] = {
          "recording static-position-locked", Profiles::kFirmware),
     loop("An integrator.", on<goes_on_with_another_reference>),
     variant("slowly", slowly(on<goes_on_with_another_reference>)),
+
+    variant("speed", loop("An integrator of speed.", on<speed_goes_on_with_another_reference>)),
+    variant("slowly.speed", slowly(on<speed_goes_on_with_another_reference>)),
 
     must("morap.loop.new-parameters-reset",
          "Newly installed parameters of any controller begin the running loop anew.",

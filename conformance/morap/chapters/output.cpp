@@ -91,11 +91,16 @@ void expect_direct_settled(NodeBench& node, float volts, int levels) {
 }
 
 /// The voltage at the first tick after a reference; none if nobody knows that it was read before
-/// the second one.
-std::optional<int> first_levels(NodeBench& node, CommandId mode, float reference) {
+/// the second one. `behind`: a mode that it is in already, at 0.
+std::optional<int> first_levels(NodeBench& node, CommandId mode, float reference,
+                                std::optional<CommandId> behind) {
   constexpr int kMostReads = 12;
   const auto between_ticks = tick_period(kIdleRateHz) * 9 / 10;
   node.bring_to(kFree);
+  if (behind) {
+    node.send(*behind, 0.0F);
+    node.settle();
+  }
   auto before_it = node.now();
   node.send(mode, reference);
   int levels = 0;
@@ -112,11 +117,12 @@ std::optional<int> first_levels(NodeBench& node, CommandId mode, float reference
 
 /// Of a free shaft at rest: it is driven for some ticks and let go. In real time the first tick may
 /// be missed, and gets further tries.
-void expect_first_levels(NodeBench& node, CommandId mode, float reference, int levels) {
+void expect_first_levels(NodeBench& node, CommandId mode, float reference, int levels,
+                         std::optional<CommandId> behind = {}) {
   constexpr int kTries = 12;
   std::optional<int> first;
   for (int i = 0; i < kTries && !first && !node.is_over(); ++i) {
-    first = first_levels(node, mode, reference);
+    first = first_levels(node, mode, reference, behind);
   }
   if (!first) return node.leave_open("this bus is too slow to be read between two ticks");
   const int last = *first;
@@ -127,11 +133,16 @@ void expect_first_levels(NodeBench& node, CommandId mode, float reference, int l
 
 /// More than drives the rated current.
 template <CommandId mode, int sign, bool is_limited>
-void drive_at_rest(NodeBench& node) {
+void drive_behind(NodeBench& node, std::optional<CommandId> behind) {
   const int most = node.motor().standstill_levels;
   const int asked = most * 3 / 2;
   expect_first_levels(node, mode, static_cast<float>(sign * asked) * kVoltsPerLevel,
-                      sign * (is_limited ? most : asked));
+                      sign * (is_limited ? most : asked), behind);
+}
+
+template <CommandId mode, int sign, bool is_limited>
+void drive_at_rest(NodeBench& node) {
+  drive_behind<mode, sign, is_limited>(node, {});
 }
 
 constexpr Case at_rest(CaseBody run) { return from(kFree, Hazard::kMove, run); }
@@ -287,6 +298,9 @@ constexpr Clause kOutputClauses[] = {
             expect_direct(node, 10.0F, 213);
           }),
     variant("free", at_rest(on<drive_at_rest<kDirectVoltage, 1, false>>)),
+    variant("behind-voltage", at_rest([](NodeBench& node) {
+              drive_behind<kDirectVoltage, 1, false>(node, kVoltage);
+            })),
 
     must("morap.direct.limit", "No voltage beyond 20 V is applied, which reads as 20.015625 V.",
          "vector 58", Profiles::kFirmware),
@@ -415,6 +429,18 @@ constexpr Clause kOutputClauses[] = {
               node.send(kDisable);
             })),
 
+    variant("ended", at_rest([](NodeBench& node) {
+              constexpr float kNoticed = 0.01F;  // A, four steps
+              node.send(kVoltage, 1.5F);
+              node.settle();
+              const auto driven = node.number(kReadCurrent);
+              node.send(kDisable);
+              node.settle();
+              if (driven < kNoticed) return node.leave_open("hardly any current drives this shaft");
+              node.about("once nothing drives the motor any more");
+              node.expect_near(kReadCurrent, 0.0, double{driven} / 2);
+            })),
+
     must("morap.current.zero", "Without a current 0 is read.", "firmware, current"),
     fresh("At power-on.", [](NodeBench& node) { node.expect_number(kReadCurrent, 0.0F); }),
 
@@ -435,6 +461,15 @@ constexpr Clause kOutputClauses[] = {
          "Rates for which the timer has to be divided are kept as well, down to a few hertz.",
          "reference, timer; recording static-slow-controller"),
     fresh("A loop of 50 Hz, 10 ticks.", [](NodeBench& node) { expect_loop_rate(node, 50, 10); }),
+
+    variant("slowly", slowly([](NodeBench& node) {
+              run_loop(node, proportional(2, 1.0F), 0.75F);
+              node.expect_levels(0);
+              node.expect_levels_at_ticks({16});
+              node.send(kPosition, 0.375F);
+              node.expect_levels_at_ticks({16, 8});
+              node.send(kDisable);
+            })),
 
     must("morap.tick.uncalibrated-rate",
          "The rate follows the mode also while the node is uncalibrated.", "firmware, tick"),

@@ -428,6 +428,12 @@ constexpr Clause kProgramClauses[] = {
                   node.expect_programming(kSuccess);
                 }),
 
+    variant("wrong-then-right", programming("Behind a wrong checksum the right one.",
+                                            [](NodeBench& node) {
+                                              program(node, kGood, " A8 A9 A9 A9");
+                                              node.expect_programming(kFailure);
+                                            })),
+
     must("morap.program.status-stays", "The programming status stays however often it is read.",
          "firmware, programming status"),
     programming("Four reads.",
@@ -435,6 +441,12 @@ constexpr Clause kProgramClauses[] = {
                   program(node, good());
                   for (int i = 0; i < 4; ++i) node.expect_programming(kSuccess);
                 }),
+
+    variant("failure", programming("Four reads behind a refused message.",
+                                   [](NodeBench& node) {
+                                     program(node, kGood, " A8");
+                                     for (int i = 0; i < 4; ++i) node.expect_programming(kFailure);
+                                   })),
 
     must("morap.program.status-over-commands", "Other commands leave the programming status alone.",
          "firmware, programming status"),
@@ -497,6 +509,13 @@ constexpr Clause kProgramClauses[] = {
                   node.expect_programming(kNothing);
                 }),
 
+    variant("failure", programming("Behind a refused message.",
+                                   [](NodeBench& node) {
+                                     program(node, kGood, " A8");
+                                     node.send(kDefaultControllers);
+                                     node.expect_programming(kNothing);
+                                   })),
+
     must("morap.defaults.position", "Identifier 33 brings the stored position controller back.",
          "document; vector 41", Profiles::kFirmware),
     programming("Programmed and loaded.",
@@ -547,6 +566,27 @@ constexpr Clause kProgramClauses[] = {
               node.send(kDisable);  // what is stored is not to run from here
               node.tick(kIdleRateHz);
               node.expect_same(node.read(kReadSpeedSet, 4), before);
+            })),
+
+    must("morap.defaults.last-counts",
+         "Of parameters and a load of the stored ones inside one tick the last is used.",
+         "firmware: one flag for both", Profiles::kFirmware),
+    variant("loaded", slowly([](NodeBench& node) {
+              const auto before = node.read(kReadSpeedSet, 4);
+              run_slow_loop(node);
+              program(node, kSpeedSet);
+              node.send(kDefaultControllers);
+              node.send(kDisable);  // what is stored is not to run from here
+              node.tick(kIdleRateHz);
+              node.expect_same(node.read(kReadSpeedSet, 4), before);
+            })),
+    variant("programmed", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              node.send(kDefaultControllers);
+              program(node, kSpeedSet);
+              node.send(kDisable);
+              node.tick(kIdleRateHz);
+              node.expect_bytes(kReadSpeedSet, kSpeedSet);
             })),
 
     must("morap.defaults.running", "A loop that runs goes on at the rate of its stored controller.",

@@ -757,6 +757,24 @@ constexpr Clause kGripperClauses[] = {
         },
         kFull),
 
+    must("parol6.gripper.stop-stays",
+         "Clear-error does not take the stop error back while the set-points ask for the stop.",
+         "gripper"),
+    grip(
+        "Clear-error with the stop flag leaves the error.",
+        [](BoardBench& board) {
+          prepare(board, 60);
+          board.act(with_gripper(stopping(250)));
+          board.act(with_gripper(in_mode(stopping(250), gripper_mode::kClearError)));
+          board.act(with_gripper(stopping(250)));
+          board.about("clear-error while the stop is asked for");
+          board.expect_bits(board.ask(with_gripper(stopping(250))), "gripper.status",
+                            gripper_status::kEstopError, gripper_status::kEstopError);
+          board.act(with_gripper(in_mode(to(60), 0)));
+          board.act(with_gripper(in_mode(to(60), gripper_mode::kClearError)));
+        },
+        kFull),
+
     must("parol6.gripper.clear-error", "Clear-error ends a calibration and leaves the drive idle.",
          "gripper"),
     grip(
