@@ -26,7 +26,12 @@ while ! [ -L {folder}/arm ]; do sleep 0.01; done
 HAND = """
 had=$(grep -c "$1 is $2\\$" {answers})
 echo "$1 $2" >{inputs}
-while [ $(grep -c "$1 is $2\\$" {answers}) -eq $had ]; do sleep 0.005; done
+tries=0
+while [ $(grep -c "$1 is $2\\$" {answers}) -eq $had ]; do
+  tries=$((tries + 1))
+  [ $tries -gt 400 ] && exit 1
+  sleep 0.005
+done
 """
 
 

@@ -12,7 +12,6 @@ import contextlib
 import json
 import subprocess
 import sys
-import tempfile
 import time
 
 from hosted_devices import DEVICES, come_first, hosted, load
@@ -29,7 +28,7 @@ FALSE = ("fail", "flaky", "error")
 # The first is that of the quiet run; the runs beside busy loops take them in turn.
 SOUND = {"parol6": ["pass-us=10", "pass-us=100", "pass-us=250"],
          "kinovazed": ["call-us=600", "plant=bench", "call-us=19000"],
-         "morap": ["nodes=2", "nodes=1"]}
+         "morap": ["pen=yes", "nodes=1"]}
 # What switches it off and on, or starts it again, as an input.
 BACK = {"parol6": ["--power-cycle", "power"], "kinovazed": ["--restart", "restart"], "morap": ["--power-cycle", "power"]}
 
@@ -37,15 +36,14 @@ BACK = {"parol6": ["--power-cycle", "power"], "kinovazed": ["--restart", "restar
 def verdicts_of(device, option):
     """What the cases come to, and how long that took."""
     begun = time.time()
-    with hosted(ARMJIG, device, "--set", option) as one, tempfile.NamedTemporaryFile() as report:
+    with hosted(ARMJIG, device, "--set", option) as one:
         way, back = BACK[device]
+        report = one.folder / "report.json"
         done = one.run("conformance", device, "--tier", "full", "--require", "0", "--hand", one.hand, way,
-                       f"{one.hand} {back} 1", "--json", report.name)
-        try:
-            rows = json.load(report)["rows"]
-        except json.JSONDecodeError:
+                       f"{one.hand} {back} 1", "--json", str(report))
+        if not report.exists():
             sys.exit(f"{device} {option}: no report; {done.stderr.strip()}")
-        return rows, time.time() - begun
+        return json.loads(report.read_text())["rows"], time.time() - begun
 
 
 def named(rows, *verdicts):
