@@ -313,12 +313,14 @@ void BoardBench::enable() {
   }
 }
 
-/// Cases drive unhomed joints to and fro; what remains must not add up until a switch is hit.
+/// Cases drive unhomed joints to and fro; what remains must not add up until a switch is hit. One
+/// that homed the arm put its counters elsewhere.
 void BoardBench::walk_back() {
   constexpr int kNear = 20;
   constexpr int kMost = 1500;  // what a guard lets pass for every joint
   auto answer = ask(idle());
-  if (!origin_) origin_ = is_homed(answer) ? kStandby : answer.position;
+  if (is_homed(answer)) origin_ = kStandby;
+  if (!origin_) origin_ = answer.position;
   const auto is_back = [&](const Answer& now) {
     return std::ranges::equal(now.position, *origin_, [](Steps a, Steps b) {
       return std::abs(a.value - b.value) <= kNear;
@@ -371,10 +373,12 @@ void BoardBench::home() {
 }
 
 /// The board would close any distance in 10 ms if it could. Each piece is counted from the one
-/// before and not from where the arm is, so that an arm that goes elsewhere is seen to stray.
+/// before and not from where the arm is, so that an arm that goes elsewhere is seen to stray. At the
+/// speeds that the demonstration leaves as the most, a board with passes of 250 us steps in every
+/// second one: 2000 steps/s.
 void BoardBench::walk_to_standby() {
-  constexpr int kPiece = 30;
-  constexpr int kMostPieces = 10'000;
+  constexpr int kPiece = 15;
+  constexpr int kMostPieces = 20'000;
   auto position = ask(idle()).position;
   auto target = position;
   for (int i = 0; i < kMostPieces && position != kStandby && !is_over() && !error(); ++i) {

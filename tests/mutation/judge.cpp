@@ -27,7 +27,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -48,7 +47,7 @@
 #include "harness/compare/rules.hpp"
 #include "harness/rig/target.hpp"
 #include "tests/mutation/judged.hpp"
-#include "tests/mutation/without_hands.hpp"
+#include "tests/within_reach/within_reach.hpp"
 
 namespace armjig::mutation {
 namespace {
@@ -126,62 +125,13 @@ std::string judgement_in_memory(const cli::Device& device, const cli::Device& ow
   return judgement(device, **bench, tier);
 }
 
-/// What stands for a real device. Those who open one have plain functions, which cannot keep it.
-struct Reached {
-  const cli::Device* device{};
-  Target emulated;
-  Endpoint* port{};  ///< of the emulated one, when it is there
-};
-Reached reached;
-
-template <class Kind>
-Outcome<std::unique_ptr<typename Kind::Port>> open_reached(const Target& /*place*/,
-                                                           const SerialLine& /*line*/) {
-  const auto& kind = std::get<Kind>(reached.device->port);
-  return cli::wiring_of(*reached.device, kind).open_emulated(reached.emulated).map([](auto port) {
-    reached.port = port.get();
-    return without_hands(std::move(port));
-  });
-}
-
-/// Starts the device again, and nothing else.
-Hand hand_for(std::string_view again) {
-  return {.has = [again](std::string_view input) { return input == again; },
-          .set =
-              [again](std::string_view input, std::int64_t value) {
-                return input == again && reached.port->touch(input, value);
-              }};
-}
-
 /// The same as over a link.
-template <class Kind>
-std::string judgement_within_reach(const Kind& kind, std::string_view place, Tier tier,
-                                   std::string_view again) {
-  const auto& device = *reached.device;
-  auto wiring = cli::wiring_of(device, kind);
-  wiring.open_real = open_reached<Kind>;
-  RigOptions how;
-  how.target = *parse_target(std::string{place});
-  how.permissions = Permissions::all();
-  how.when_left = WhenLeft::kSayNothing;
-  auto rig = Rig<typename Kind::Port>::open(wiring, how);
-  if (!rig) return "killed: the start, " + describe(rig.error());
-  const auto bench = kind.make_bench(*std::move(rig), how);
-  if (!bench) return "killed: the start, " + describe(bench.error());
-  (*bench)->set_hand(hand_for(again));
-  return judgement(device, **bench, tier);
-}
-
 std::string judgement_within_reach(const cli::Device& device, const Target& target, Tier tier,
                                    std::string_view again) {
-  constexpr std::array<std::string_view, 3> kPlaces{"pty:/dev/null", "tcp:localhost:1",
-                                                    "i2c:/dev/null"};
-  reached = {&device, target};
-  return std::visit(
-      [&](const auto& kind) {
-        return judgement_within_reach(kind, kPlaces.at(device.port.index()), tier, again);
-      },
-      device.port);
+  const auto bench = test::bench_within_reach(
+      device, target, [again](std::string_view input) { return input == again; });
+  if (!bench) return "killed: the start, " + describe(bench.error());
+  return judgement(device, **bench, tier);
 }
 
 Outcome<void> judge(const cli::Device& device, const cli::Device& own, const Target& target,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All suites: what their catalogues promise, and that they hold against the emulated devices.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/reference.hpp"
@@ -17,6 +19,7 @@
 #include "conformance/suite.hpp"
 #include "harness/link/impairment.hpp"
 #include "tests/unit/support/suites.hpp"
+#include "tests/within_reach/within_reach.hpp"
 
 namespace armjig {
 namespace {
@@ -197,6 +200,10 @@ TEST(Parol6Suite, GivesTheSameReportForTheSameSeed) {
   EXPECT_EQ(once, to_json(run(parol6_suite(), "emulated:", {.seed = 3})));
 }
 
+bool is_accusation(Verdict verdict) {
+  return verdict == Verdict::kFail || verdict == Verdict::kFlaky || verdict == Verdict::kError;
+}
+
 /// What a sound device is accused of on a link that is bad in that way.
 std::vector<std::string> accusations(const cli::Device& device, const std::string& impairment) {
   RigOptions how;
@@ -210,7 +217,7 @@ std::vector<std::string> accusations(const cli::Device& device, const std::strin
   const auto report = run_suite(device.suite(), *bench, options, [](const ReportRow&) {});
   std::vector<std::string> rows;
   for (const auto& row : report.rows) {
-    if (row.verdict == Verdict::kFail || row.verdict == Verdict::kError) {
+    if (is_accusation(row.verdict)) {
       rows.push_back(impairment + ": " + to_text(row));
     }
   }
@@ -222,6 +229,37 @@ TEST(Suites, AccuseNoSoundDeviceOnALinkThatDelays) {
     for (const auto* law : {"delay=5ms", "delay=uniform(0ms,1ms)", "delay=uniform(0ms,20ms)",
                             "in.delay=exponential(3ms)", "out.delay=normal(10ms,5ms)"}) {
       EXPECT_THAT(accusations(device, law), testing::IsEmpty()) << device.name;
+    }
+  }
+}
+
+/// What a sound device is accused of that is reached as over a link, with somebody beside it.
+std::vector<std::string> accusations_within_reach(const cli::Device& device,
+                                                  const std::string& options) {
+  const auto target = *parse_target("emulated:?profile=firmware" + options);
+  const auto bench = test::bench_within_reach(device, target, [](auto) { return true; });
+  RunOptions run;
+  run.permissions = Permissions::all();
+  run.required_share = 0;
+  const auto report = run_suite(device.suite(), **bench, run, [](const ReportRow&) {});
+  std::vector<std::string> rows;
+  for (const auto& row : report.rows) {
+    if (is_accusation(row.verdict)) {
+      rows.push_back(fmt::format("{}{}: {}: {}, but {}", device.name, options, row.name,
+                                 row.expected, row.actual));
+    }
+  }
+  return rows;
+}
+
+TEST(Suites, AccuseNoSoundDeviceThatIsGuardedAndHasSomebodyBesideIt) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> sound{
+      {"parol6", {"", "&pass-us=10", "&pass-us=250"}},
+      {"kinovazed", {"", "&plant=bench", "&call-us=19000"}},
+      {"morap", {"", "&pen=yes", "&nodes=1"}}};
+  for (const auto& [device, variants] : sound) {
+    for (const auto& options : variants) {
+      EXPECT_THAT(accusations_within_reach(test::device(device), options), testing::IsEmpty());
     }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/mutation/without_hands.hpp"
+#include "tests/within_reach/without_hands.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -8,7 +8,7 @@
 
 #include "harness/link/port_around.hpp"
 
-namespace armjig::mutation {
+namespace armjig::test {
 namespace {
 
 template <class Around>
@@ -59,4 +59,4 @@ std::unique_ptr<BusPort> without_hands(std::unique_ptr<BusPort> port) {
   return std::make_unique<HandlessBus>(std::move(port));
 }
 
-}  // namespace armjig::mutation
+}  // namespace armjig::test

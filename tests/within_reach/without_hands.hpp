@@ -9,11 +9,11 @@
 
 /// Emulated devices as a link shows them: nothing can be seen or done but there. Time stays
 /// virtual.
-namespace armjig::mutation {
+namespace armjig::test {
 
 [[nodiscard]] std::unique_ptr<StreamPort> without_hands(std::unique_ptr<StreamPort> port);
 [[nodiscard]] std::unique_ptr<SessionSource> without_hands(std::unique_ptr<SessionSource> port);
 /// It has whole messages only, as the bus of an operating system.
 [[nodiscard]] std::unique_ptr<BusPort> without_hands(std::unique_ptr<BusPort> port);
 
-}  // namespace armjig::mutation
+}  // namespace armjig::test
