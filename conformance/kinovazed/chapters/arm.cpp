@@ -198,7 +198,7 @@ constexpr Clause kArmClauses[] = {
                           on<silent_stop<kRunningSequence>>)),
     variant("steering", in(kSteering, "From steering, beat 3.", on<silent_stop<kSteering>>)),
 
-    must("kinovazed.arm.recovers", "Behind a repair QuitEStop and Initialize lead to idle as ever.",
+    must("kinovazed.arm.recovers", "After a repair QuitEStop and Initialize lead to idle as ever.",
          "server, transcript S6"),
     in(kIdle, "Initialized, and beat 21.",
        [](ServerBench& server) {

@@ -71,7 +71,7 @@ constexpr Clause kBeatClauses[] = {
     must("kinovazed.beat.single", "There is one heartbeat in each second, and no other.",
          "server, recording heartbeat-period"),
     /// A slow one reads its arm in between.
-    in(kEmergencyStopped, "Four beats within 4.5 s behind one.",
+    in(kEmergencyStopped, "Four beats within 4.5 s after one.",
        [](ServerBench& server) {
          (void)server.await_beat();
          constexpr auto kTime = 4500ms;
@@ -137,7 +137,7 @@ constexpr Clause kBeatClauses[] = {
     in(kPoweredOff, "Beat 1.", on<value<kPoweredOff>>),
 
     must("kinovazed.beat.initializing",
-         "While the arm initializes behind an emergency stop the heartbeat is 1.",
+         "While the arm initializes after an emergency stop the heartbeat is 1.",
          "document; server, state-command-matrix"),
     in(kInitializing, "Beat 1.", on<value<kInitializing>>),
 

@@ -152,7 +152,7 @@ constexpr Clause kConnectionClauses[] = {
            server.as(0);
            server.pause(100ms);
            connect_anew(server);
-           server.about("behind QuitEStop of a client that has gone");
+           server.about("after QuitEStop of a client that has gone");
            server.expect_beat(1);
          }),
 
@@ -170,7 +170,7 @@ constexpr Clause kConnectionClauses[] = {
     must("kinovazed.connection.reset",
          "When a client has reset its connection a new one is served.",
          "server, recording connection-rst"),
-    look("Behind each of three resets the next client is served.",
+    look("After each of three resets the next client is served.",
          [](ServerBench& server) {
            for (int i = 0; i < 3; ++i) {
              server.throw_away();

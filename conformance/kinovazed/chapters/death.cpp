@@ -23,14 +23,14 @@ void unplug(ServerBench& server) {
 
 void break_velocity(ServerBench& server) {
   server.spoil();
-  server.about("behind a velocity that cannot be read");
+  server.about("after a velocity that cannot be read");
   server.touch("arm.fail.velocity_read", 1);
   server.pause(200ms);
 }
 
 void draw_current(ServerBench& server) {
   server.spoil();
-  server.about("behind 4.6 A");
+  server.about("after 4.6 A");
   server.touch("arm.current", 4600);
   server.pause(200ms);
   server.touch("arm.current", 800);
@@ -257,7 +257,7 @@ constexpr Clause kDeathClauses[] = {
     dies("EStop is answered.", on<lives<draw_current>>),
 
     must("kinovazed.death.mode-write",
-         "A control type that cannot be written hangs the server, behind Accepted.",
+         "A control type that cannot be written hangs the server, after Accepted.",
          "server; reference 11.2", Profiles::kFirmware, "kinovazed.death.no-mode-write"),
     dies("Accepted, and then nothing.", on<hangs<break_mode_write>>),
 
@@ -392,11 +392,10 @@ constexpr Clause kDeathClauses[] = {
     variant("half-closed", dies("The next client hears nothing.",
                                 on<hangs<end_at_freeze<&ServerBench::finish_sending>>>)),
 
-    must(
-        "kinovazed.death.not-mute",
-        "One message behind the one that fails does not mute it, nor do lines of one message each: "
-        "a lone Freeze, or refused lines, with a close or a half-close are harmless.",
-        "server; reference 4.6"),
+    must("kinovazed.death.not-mute",
+         "One message after the one that fails does not mute it, nor do lines of one message each: "
+         "a lone Freeze, or refused lines, with a close or a half-close are harmless.",
+         "server; reference 4.6"),
     in(kIdle, "Freeze and a close: EStop of the next client is answered.",
        on<ends_harmlessly<kFreeze, &ServerBench::leave>>),
     variant("half-closed", in(kIdle, "Freeze and a half-close: EStop of the next is answered.",

@@ -38,7 +38,7 @@ Duration time_after_early_stop(ServerBench& server, std::string_view command) {
   server.pause(600ms);
   switch_off(server);
   server.pause(kLater);
-  server.about("Initialize behind EStop early on the way");
+  server.about("Initialize after EStop early on the way");
   return time_of_initializing(server);
 }
 
@@ -131,7 +131,7 @@ constexpr Clause kInterruptClauses[] = {
          "The end of a change of mode that EStop ended is not told after the next Initialize "
          "either.",
          "server; reference 8.3"),
-    in(kIdle, "Nothing for 1 s behind Initialized.",
+    in(kIdle, "Nothing for 1 s after Initialized.",
        [](ServerBench& server) {
          server.accept("SetJoystickMode:XYZ");
          initialize_afresh(server);
@@ -140,7 +140,7 @@ constexpr Clause kInterruptClauses[] = {
        }),
 
     must("kinovazed.interrupt.half-way",
-         "Behind EStop on the way to the folded pose Initialize leads to ready.",
+         "After EStop on the way to the folded pose Initialize leads to ready.",
          "server, recording session-estop-mid-retract"),
     in(kIdle, "Initialized comes, and beat 21.",
        [](ServerBench& server) {

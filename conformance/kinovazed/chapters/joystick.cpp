@@ -100,7 +100,7 @@ void expect_own_axes(ServerBench& server) {
   const auto behind = time_of(server, "Home");
   const auto apart = std::max(own, of_other) - std::min(own, of_other);
   if (apart < kAway) return server.leave_open("this arm is as fast back from both");
-  server.about("how much farther a push of Axis4to6 leads behind XYZ");
+  server.about("how much farther a push of Axis4to6 leads after XYZ");
   expect_time(server, behind - own, -apart / 2, apart / 2);
 }
 
@@ -213,7 +213,7 @@ void two_modes(ServerBench& server) {
 }
 
 constexpr Clause kJoystickClauses[] = {
-    must("kinovazed.mode.settles", "JoystickModeSet comes half a second behind a mode that moves.",
+    must("kinovazed.mode.settles", "JoystickModeSet comes half a second after a mode that moves.",
          "server, recording session-joystick-modes"),
     /// The shortest of three, for all that a link does makes it longer. A mode takes more turns
     /// with the arm than an answer.
@@ -274,7 +274,7 @@ constexpr Clause kJoystickClauses[] = {
          }
        }),
 
-    must("kinovazed.joystick.gate", "Behind NoMode moves are Rejected.",
+    must("kinovazed.joystick.gate", "After NoMode moves are Rejected.",
          "server, recording joystick-mode-gate"),
     in(kSteering, "Rejected.",
        [](ServerBench& server) {
@@ -283,9 +283,9 @@ constexpr Clause kJoystickClauses[] = {
        }),
 
     must("kinovazed.joystick.behind-freeze",
-         "Behind Freeze and Unfreeze moves are Rejected until a mode is set again.",
+         "After Freeze and Unfreeze moves are Rejected until a mode is set again.",
          "server; reference 6.6"),
-    in(kSteering, "Rejected, and Accepted behind a mode.",
+    in(kSteering, "Rejected, and Accepted after a mode.",
        [](ServerBench& server) {
          server.perform("Freeze", Event::kFreezed);
          server.perform("Unfreeze", Event::kUnfreezed);
@@ -295,7 +295,7 @@ constexpr Clause kJoystickClauses[] = {
        }),
 
     must("kinovazed.joystick.behind-objective",
-         "Behind an objective moves are Rejected until a mode is set again.",
+         "After an objective moves are Rejected until a mode is set again.",
          "server, transcript T42"),
     in(kSteering, "Rejected.",
        [](ServerBench& server) {
@@ -359,9 +359,9 @@ constexpr Clause kJoystickClauses[] = {
                            on<three_axes<kRotation>>)),
 
     must("kinovazed.joystick.own-axes",
-         "A mode has its own axes also right behind another one, with no NoMode between.",
+         "A mode has its own axes also right after another one, with no NoMode between.",
          "server; reference 8.2"),
-    in(kIdle, "The third of Axis4to6 behind XYZ leads as far as without.", on<expect_own_axes>),
+    in(kIdle, "The third of Axis4to6 after XYZ leads as far as without.", on<expect_own_axes>),
 
     must("kinovazed.joystick.signs",
          "In mode XYZ positive numbers lead the hand up, to the right and to the front, which is "
@@ -390,7 +390,7 @@ constexpr Clause kJoystickClauses[] = {
            const auto even = way_back(server, kXyz, {{axis, 400, kPush}, {axis, -400, kPush}});
            const auto back = way_back(server, kXyz, {{axis, 200, 2 * kPush}, {axis, -400, kPush}});
            server.about(
-               fmt::format("the way back behind number {}, against 400 both ways", axis + 1));
+               fmt::format("the way back after number {}, against 400 both ways", axis + 1));
            expect_time(server, back - even, -kAway - server.noise(), kAway + server.noise());
          }
        }),
@@ -425,7 +425,7 @@ constexpr Clause kJoystickClauses[] = {
          server.pause(kPush);
          initialize_afresh(server);
          server.pause(3s);
-         server.about("the way to Home behind EStop and Initialize");
+         server.about("the way to Home after EStop and Initialize");
          expect_time(server, time_of(server, "Home"), usual - 400ms - server.noise(),
                      usual + 400ms + server.noise());
        }),
@@ -508,7 +508,7 @@ constexpr Clause kJoystickClauses[] = {
            server.spoil();
            two_modes(server);
            server.expect(Event::kAccepted);
-           server.about("behind two modes within half a second");
+           server.about("after two modes within half a second");
            expect_hung(server);
          }),
 

@@ -162,7 +162,7 @@ constexpr Clause kLineClauses[] = {
            server.expect(Event::kAccepted);
          }),
 
-    must("kinovazed.line.lf-cr", "A CR behind an LF is a blank in front of the next line.",
+    must("kinovazed.line.lf-cr", "A CR after an LF is a blank in front of the next line.",
          "server, recording framing-lfcr", Profiles::kFirmware),
     look("Three lines that end with LF CR are answered.",
          [](ServerBench& server) {
@@ -297,8 +297,7 @@ constexpr Clause kLineClauses[] = {
            Profiles::kDocumented, "kinovazed.line.case"),
     look("EStop in four other spellings is Rejected.", on<not_understood<kOtherCapitals>>),
 
-    must("kinovazed.line.whole-name",
-         "A name with something in front of it or behind it makes no command.",
+    must("kinovazed.line.whole-name", "A name with something before or after it makes no command.",
          "server; reference 3.3", Profiles::kFirmware),
     look("Names with something around them get no answer.", on<not_understood<kMoreThanAName>>),
 
@@ -336,24 +335,24 @@ constexpr Clause kLineClauses[] = {
     must("kinovazed.line.trailing-colon", "One colon at the end of a line is free.",
          "server, recording framing-extra-colons", Profiles::kFirmware,
          "kinovazed.line.no-trailing-colon"),
-    from(kStopped, Hazard::kState, "EStop with a colon behind it stops.", on<stops<kColonAtEnd>>),
+    from(kStopped, Hazard::kState, "EStop with a colon after it stops.", on<stops<kColonAtEnd>>),
 
     should("kinovazed.line.no-trailing-colon",
            "A command with a colon too many at its end is Rejected.", kSilent,
            Profiles::kDocumented, "kinovazed.line.trailing-colon"),
-    look("EStop with a colon behind it is Rejected.", on<not_understood<kColonAtEnd>>),
+    look("EStop with a colon after it is Rejected.", on<not_understood<kColonAtEnd>>),
 
     must("kinovazed.line.two-colons", "A second colon at the end makes no command.",
          "server, transcript T66", Profiles::kFirmware),
-    look("Commands with two colons behind them get no answer.", on<not_understood<kTwoColons>>),
+    look("Commands with two colons after them get no answer.", on<not_understood<kTwoColons>>),
 
     must("kinovazed.line.colon-first", "A colon in front of a name makes no command.",
          "server, recording framing-blank-and-colon", Profiles::kFirmware),
     look("Lines that begin with a colon get no answer.", on<not_understood<kColonsInFront>>),
 
-    must("kinovazed.line.nul", "A NUL in or behind a name makes no command.",
+    must("kinovazed.line.nul", "A NUL in or after a name makes no command.",
          "server, recording framing-nul", Profiles::kFirmware),
-    look("NUL in, behind and in front of a name gets no answer.", on<not_understood<kNuls>>),
+    look("NUL in, after and before a name gets no answer.", on<not_understood<kNuls>>),
 
     must("kinovazed.line.controls",
          "Control characters that are no blanks, backspace and DEL among them, make no command.",
@@ -389,14 +388,14 @@ constexpr Clause kLineClauses[] = {
     variant("refused", look("The largest and the smallest number are understood, and refused here.",
                             on<refused<kLimits>>)),
 
-    must("kinovazed.line.number", "What stands behind the digits of a number is passed over.",
+    must("kinovazed.line.number", "What stands after the digits of a number is passed over.",
          "server, recording joystick-numbers-tail", Profiles::kFirmware,
          "kinovazed.line.number-strict"),
-    look("Six tails behind numbers are understood, and refused here.", on<refused<kTails>>),
+    look("Six tails after numbers are understood, and refused here.", on<refused<kTails>>),
 
-    should("kinovazed.line.number-strict", "A number with anything behind its digits is Rejected.",
+    should("kinovazed.line.number-strict", "A number with anything after its digits is Rejected.",
            kSilent, Profiles::kDocumented, "kinovazed.line.number"),
-    from(kInMode, Hazard::kMove, "Three tails behind a zero are Rejected in steering.",
+    from(kInMode, Hazard::kMove, "Three tails after a zero are Rejected in steering.",
          on<refused<kTailsForSteering>>),
 
     must("kinovazed.line.number-blanks", "Blanks in front of a number do not count.",

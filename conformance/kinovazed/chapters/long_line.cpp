@@ -29,7 +29,7 @@ constexpr Clause kLongLineClauses[] = {
     must("kinovazed.line.padded",
          "A line that is longer than one read of 128 bytes is served as a whole.",
          "server, recording framing-long-padded-1023", Profiles::kFirmware),
-    look("EStop behind up to 1095 blanks is answered.",
+    look("EStop after up to 1095 blanks is answered.",
          [](ServerBench& server) {
            for (const std::size_t size : {100U, 200U, 500U, 1023U, 1100U}) {
              server.about("EStop in " + std::to_string(size) + " bytes");
@@ -95,9 +95,9 @@ constexpr Clause kLongLineClauses[] = {
                          })),
 
     must("kinovazed.line.behind-endless",
-         "Behind a line that was too long the next client is served from its first line on.",
+         "After a line that was too long the next client is served from its first line on.",
          "server, recording framing-endless-line"),
-    look("The client behind one that was closed is answered at once.",
+    look("The client after one that was closed is answered at once.",
          [](ServerBench& server) {
            server.send(junk(1152));
            server.expect_end();
@@ -106,9 +106,9 @@ constexpr Clause kLongLineClauses[] = {
          }),
 
     must("kinovazed.line.lf-alone",
-         "An LF in a segment of its own is passed over, and the command behind it served.",
+         "An LF in a segment of its own is passed over, and the command after it served.",
          "server, recording framing-empty-lf-alone"),
-    look("EStop 100 ms behind an LF is answered.",
+    look("EStop 100 ms after an LF is answered.",
          [](ServerBench& server) {
            server.send("\n");
            server.pause(100ms);
@@ -117,10 +117,10 @@ constexpr Clause kLongLineClauses[] = {
          }),
 
     must("kinovazed.line.lf-first",
-         "An LF that comes first in a read takes the byte behind it along, if that was read with "
+         "An LF that comes first in a read takes the byte after it along, if that was read with "
          "it.",
          "server, transcripts T71, T72 and T74", Profiles::kFirmware, "kinovazed.line.lf-harmless"),
-    look("Behind an LF EStop is lost and XEStop is EStop.",
+    look("After an LF EStop is lost and XEStop is EStop.",
          [](ServerBench& server) {
            server.ignored("\nEStop\r\n");
            server.about("LF and XEStop");
@@ -134,7 +134,7 @@ constexpr Clause kLongLineClauses[] = {
 
     should("kinovazed.line.lf-harmless", "An LF in front of a command costs nothing.", kChoice,
            Profiles::kDocumented, "kinovazed.line.lf-first"),
-    look("EStop directly behind an LF is answered.",
+    look("EStop directly after an LF is answered.",
          [](ServerBench& server) {
            server.send("\nEStop\r\n");
            server.expect(Event::kAccepted);
@@ -144,10 +144,10 @@ constexpr Clause kLongLineClauses[] = {
          }),
 
     must("kinovazed.line.lf-boundary",
-         "The LF behind a line of 128 bytes takes the byte behind it along, if that was read with "
+         "The LF after a line of 128 bytes takes the byte after it along, if that was read with "
          "it.",
          "server; reference 2.12", Profiles::kFirmware, "kinovazed.line.lf-boundary-harmless"),
-    look("Behind EStop in 128 bytes and its LF the next one is lost.",
+    look("After EStop in 128 bytes and its LF the next one is lost.",
          [](ServerBench& server) {
            server.send(padded(128) + "\nEStop\r\n");
            server.expect(Event::kAccepted);
@@ -157,7 +157,7 @@ constexpr Clause kLongLineClauses[] = {
     should("kinovazed.line.lf-boundary-harmless",
            "A line of 128 bytes costs the next command nothing.", kChoice, Profiles::kDocumented,
            "kinovazed.line.lf-boundary"),
-    look("EStop behind a line of 128 bytes is answered.",
+    look("EStop after a line of 128 bytes is answered.",
          [](ServerBench& server) {
            server.send(long_move(128) + "\nEStop\r\n");
            server.expect(Event::kRejected);
@@ -166,10 +166,10 @@ constexpr Clause kLongLineClauses[] = {
 
     must("kinovazed.line.beside-boundary",
          "A line of 127 or 129 bytes costs the next command nothing.", "server; reference 2.12"),
-    look("EStop behind lines of 127 and of 129 bytes is answered.",
+    look("EStop after lines of 127 and of 129 bytes is answered.",
          [](ServerBench& server) {
            for (const std::size_t size : {127U, 129U}) {
-             server.about("the command behind one of " + std::to_string(size) + " bytes");
+             server.about("the command after one of " + std::to_string(size) + " bytes");
              server.send(long_move(size) + "\nEStop\r\n");
              server.expect(Event::kRejected);
              server.expect(Event::kAccepted);
@@ -179,7 +179,7 @@ constexpr Clause kLongLineClauses[] = {
     must("kinovazed.line.boundary-alone",
          "A line of 128 bytes costs a command that comes later nothing.",
          "server, recording framing-boundary-alone"),
-    look("EStop 200 ms behind a line of 128 bytes is answered.",
+    look("EStop 200 ms after a line of 128 bytes is answered.",
          [](ServerBench& server) {
            server.send(long_move(128) + "\n");
            server.expect(Event::kRejected);
@@ -195,7 +195,7 @@ constexpr Clause kLongLineClauses[] = {
     look("128 bytes of the client before cost one line.",
          [](ServerBench& server) {
            leave_behind(server, 128);
-           server.about("the first line behind 128 bytes of the client before");
+           server.about("the first line after 128 bytes of the client before");
            server.say("EStop");
            server.expect_silence();
            server.accept("EStop");
@@ -221,7 +221,7 @@ constexpr Clause kLongLineClauses[] = {
     must("kinovazed.line.carry-over-counts",
          "What was carried over counts for the length of the next client's first line.",
          "server; reference 2.15", Profiles::kFirmware),
-    look("Behind 1024 bytes of the client before 128 more close.",
+    look("After 1024 bytes of the client before 128 more close.",
          [](ServerBench& server) {
            leave_behind(server, 1024);
            server.send(junk(127));

@@ -156,7 +156,7 @@ void expect_current_behind_steering(ServerBench& server) {
     server.pause(2s);
     server.accept("MoveJoystick:0:0:0");
   }
-  server.about("Current behind steering");
+  server.about("Current after steering");
   expect_time(server, time_of(server, "Current"), 0ms, 500ms + server.noise());
 }
 

@@ -113,7 +113,7 @@ constexpr Clause kReplyClauses[] = {
 
     must("kinovazed.reply.prompt", "Freezed follows its Accepted at once, with nothing in between.",
          "server; reference 6.5", Profiles::kFirmware),
-    from(kReady, Hazard::kMove, "Four times Freezed is the message behind Accepted.",
+    from(kReady, Hazard::kMove, "Four times Freezed is the message after Accepted.",
          [](ServerBench& server) {
            for (int i = 0; i < 4; ++i) {
              expect_prompt(server, "Freeze", Event::kFreezed);
@@ -124,7 +124,7 @@ constexpr Clause kReplyClauses[] = {
     must("kinovazed.reply.prompt-unfreezed",
          "Unfreezed follows its Accepted at once, with nothing in between.",
          "server; reference 6.5", Profiles::kFirmware),
-    from(kReady, Hazard::kMove, "Four times Unfreezed is the message behind Accepted.",
+    from(kReady, Hazard::kMove, "Four times Unfreezed is the message after Accepted.",
          [](ServerBench& server) {
            for (int i = 0; i < 4; ++i) {
              server.perform("Freeze", Event::kFreezed);

@@ -59,14 +59,14 @@ constexpr Clause kRobustClauses[] = {
          "Lines of junk of any bytes are passed over, however many, and the next command is "
          "served.",
          "server; reference 3", Profiles::kFirmware, "kinovazed.robust.junk-rejected"),
-    in(kEmergencyStopped, "EStop behind 40 kB of junk is answered.",
+    in(kEmergencyStopped, "EStop after 40 kB of junk is answered.",
        [](ServerBench& server) {
          for (int i = 0; i < 40; ++i) {
            std::string lines;
            while (lines.size() < 1000) lines += junk_line(server);
            server.send(lines);
          }
-         server.about("behind 40 kB of junk");
+         server.about("after 40 kB of junk");
          server.accept("EStop");
          server.expect_silence();
        }),
@@ -98,7 +98,7 @@ constexpr Clause kRobustClauses[] = {
     must("kinovazed.robust.resets",
          "Clients that reset their connections, one after the other, do no harm.",
          "server; reference 1.9"),
-    in(kEmergencyStopped, "EStop is answered behind ten resets in the middle of a line.",
+    in(kEmergencyStopped, "EStop is answered after ten resets in the middle of a line.",
        [](ServerBench& server) {
          for (int i = 0; i < 10; ++i) {
            server.send("QuitES");
@@ -110,7 +110,7 @@ constexpr Clause kRobustClauses[] = {
        }),
 
     must("kinovazed.robust.half-closes",
-         "Clients that half-close behind a command, one after the other, are all answered.",
+         "Clients that half-close after a command, one after the other, are all answered.",
          "server; reference 1.11"),
     in(kEmergencyStopped, "Ten times Accepted and the end.",
        [](ServerBench& server) {

@@ -81,7 +81,7 @@ void refused_until(ServerBench& server) {
       server.refuse(rest.front());
       rest = rest.subspan(1);
     } while (!rest.empty() && !server.is_over() && server.now() - entered < kTime);
-    server.about(std::string{to_string(event)} + " behind refused commands");
+    server.about(std::string{to_string(event)} + " after refused commands");
     server.expect(event, ServerBench::kMotionTime);
     // A mode that is set already may be there at once.
     if (!rest.empty()) server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
@@ -310,7 +310,7 @@ constexpr Clause kStateClauses[] = {
     quick(in(kRunningSequence, "Accepted, and beat 3.", on<estop<kRunningSequence>>)),
 
     variant("and-more",
-            quick(in(kRunningSequence, "What is behind it in a segment is answered, too.",
+            quick(in(kRunningSequence, "What is after it in a segment is answered, too.",
                      [](ServerBench& server) {
                        enter(server, kRunningSequence);
                        server.send("EStop\r\nQuitEStop\r\nEStop\r\n");

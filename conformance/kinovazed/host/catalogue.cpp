@@ -14,7 +14,7 @@ constexpr std::array kRequirements{
             "document, messages"),
     of_host("kinovazed.host.line-empty", Level::kMust,
             "A client sends no LF alone: an empty line has its CR.",
-            "server, transcript T71: an LF that comes first takes the byte behind it along"),
+            "server, transcript T71: an LF that comes first takes the byte after it along"),
     of_host(
         "kinovazed.host.line-length", Level::kMust,
         "A line has fewer than 128 bytes in front of its LF.",
@@ -26,7 +26,7 @@ constexpr std::array kRequirements{
     of_host("kinovazed.host.line-ascii", Level::kMust,
             "Between two line ends stand printable ASCII bytes only.", "document: strictly ASCII"),
     of_host("kinovazed.host.bare-line", Level::kShould,
-            "A line has no blanks around its pieces and no colon behind the last one.",
+            "A line has no blanks around its pieces and no colon after the last one.",
             "server; reference 3.3: it forgives them in some places only"),
     of_host("kinovazed.host.known-words", Level::kMust,
             "A client sends only commands that the server has.",
@@ -110,14 +110,14 @@ constexpr std::array kRequirements{
             "document, interrupts; server, state table", occasion::kFold),
     of_host(
         "kinovazed.host.mode-settles", Level::kMust,
-        "Behind SetJoystickMode a client waits for JoystickModeSet, unless it stops or retracts.",
+        "After SetJoystickMode a client waits for JoystickModeSet, unless it stops or retracts.",
         "document, interrupts; server, transcripts T30 and T31", occasion::kSettling),
     of_host("kinovazed.host.mode-pause", Level::kMust,
             "Between two joystick modes that steer lie 500 ms, whatever else comes between them.",
             "server, transcript S8: it hangs", occasion::kTwoModes),
     of_host(
         "kinovazed.host.stick-mode", Level::kMust,
-        "A client moves the joystick only behind JoystickModeSet, until something ends the mode.",
+        "A client moves the joystick only after JoystickModeSet, until something ends the mode.",
         "document, joystick; server, transcript T18; reference 6.6", occasion::kJoystick),
     of_host(
         "kinovazed.host.steering-exit", Level::kMust,
@@ -148,7 +148,7 @@ constexpr std::array kRequirements{
             "server, transcript S14: the arm goes on with the other one's points",
             occasion::kActiveObjective),
     of_host("kinovazed.host.chosen-objective", Level::kShould,
-            "GetObjectivePosition comes only behind an objective that was chosen or run.",
+            "GetObjectivePosition comes only after an objective that was chosen or run.",
             "server, transcript T60: otherwise there is no such position",
             occasion::kObjectivePosition),
 };

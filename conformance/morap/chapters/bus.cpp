@@ -51,7 +51,7 @@ void expect_clock_time(NodeBench& node, Duration of_bits, Transaction transactio
 
 constexpr Clause kBusClauses[] = {
     must("morap.bus.poke-harmless", "A write of nothing changes nothing.", "firmware, vector 24"),
-    from(kUncalibrated, Hazard::kState, "The chosen status is still read behind it.",
+    from(kUncalibrated, Hazard::kState, "The chosen status is still read after it.",
          [](NodeBench& node) {
            node.send(kReadMotorStatus);
            node.send_bytes("");
@@ -81,7 +81,7 @@ constexpr Clause kBusClauses[] = {
              if (address == node.address()) continue;
              choose_status_at(node, address);
              node.about(
-                 fmt::format("its own address, behind a choice made at {:02X}", address.value));
+                 fmt::format("its own address, after a choice made at {:02X}", address.value));
              expect_own_address(node);
            }
          }),
@@ -129,9 +129,9 @@ constexpr Clause kBusClauses[] = {
            }
          }),
 
-    must("morap.bus.acknowledges-surplus", "A node acknowledges bytes behind a complete command.",
+    must("morap.bus.acknowledges-surplus", "A node acknowledges bytes after a complete command.",
          "recording static-overlong-writes"),
-    from(kUncalibrated, Hazard::kState, "Surplus behind commands that are safe with it.",
+    from(kUncalibrated, Hazard::kState, "Surplus after commands that are safe with it.",
          [](NodeBench& node) {
            for (const auto* const write :
                 {"00 00", "1F 01 02 03", "80 81", "83 00 00 00 00 00 00"}) {

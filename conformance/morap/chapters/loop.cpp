@@ -347,7 +347,7 @@ constexpr Clause kLoopClauses[] = {
     must("morap.loop.begins-still",
          "A speed loop begins as if the shaft had always stood, however far it was turned before.",
          "firmware, feedback loop", Profiles::kFirmware),
-    loop("A turn before the mode, and none behind it.",
+    loop("A turn before the mode, and none after it.",
          [](NodeBench& node) {
            auto set = proportional(kRate, 1.0F, ControllerKind::kSpeed);
            set.d = filter({gain_of_counts(node)});
@@ -418,7 +418,7 @@ constexpr Clause kLoopClauses[] = {
     variant("slowly", slowly(on<integrates_nothing>)),
 
     must("morap.loop.anti-windup",
-         "Behind a sample with a limited output the integrators stand still.",
+         "After a sample with a limited output the integrators stand still.",
          "recording static-antiwindup-locked", Profiles::kFirmware),
     loop("Three limited samples, then a reference of 0.",
          [](NodeBench& node) {

@@ -358,7 +358,7 @@ constexpr Clause kMotionClauses[] = {
          "recording loop-disable-coast", Profiles::kFirmware),
     moving("1.5 V, 0, 15.", on<coasts<kBrake15>>),
 
-    must("morap.brake.release", "Behind identifier 14 a disabled shaft turns freely.",
+    must("morap.brake.release", "After identifier 14 a disabled shaft turns freely.",
          "document, brake; recording loop-disable-coast"),
     moving("1.5 V, 0, 14.", on<coasts<kBrake14>>),
 };

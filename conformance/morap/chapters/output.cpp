@@ -31,7 +31,7 @@ void expect_step_at_tick(NodeBench& node, int before, int behind, std::uint16_t 
   node.about("right before the tick");
   node.expect_read_levels(before);
   node.tick(rate_hz);
-  node.about("right behind the tick");
+  node.about("right after the tick");
   node.expect_read_levels(behind);
   node.about({});
 }
@@ -284,7 +284,7 @@ constexpr Clause kOutputClauses[] = {
     fresh("1000 counts in a tick, and the next tick.",
           [](NodeBench& node) {
             turn_fast(node);
-            node.about("one tick behind the turn");
+            node.about("one tick after the turn");
             node.tick();
             node.expect_levels(21);
           }),
@@ -484,7 +484,7 @@ constexpr Clause kOutputClauses[] = {
             expect_voltage_at_tick(node);
           }),
 
-    must("morap.tick.back-to-idle", "Behind a feedback loop the idle rate comes back.",
+    must("morap.tick.back-to-idle", "After a feedback loop the idle rate comes back.",
          "recording static-mode-switch-locked"),
     fresh("A loop of 320 Hz, then a voltage.",
           [](NodeBench& node) {

@@ -165,7 +165,7 @@ constexpr Clause kPenClauses[] = {
              }),
 
     must("morap.pen.surplus",
-         "Behind a byte that a command does not need the pen does that command, and reacts to "
+         "After a byte that a command does not need the pen does that command, and reacts to "
          "nothing more until its power was off.",
          "vector P8", Profiles::kFirmware),
     with_pen("1 and 7 with a byte more.",

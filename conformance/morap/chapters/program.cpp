@@ -192,7 +192,7 @@ constexpr Clause kProgramClauses[] = {
          "Accepted parameters are in use from the next tick on and not before.", "vector 30",
          Profiles::kFirmware),
     programming(
-        "Read before and behind the tick.",
+        "Read before and after the tick.",
         [](NodeBench& node) {
           node.tick();
           expect_in_use_at_tick(node);
@@ -272,7 +272,7 @@ constexpr Clause kProgramClauses[] = {
     must("morap.program.too-many-rest",
          "What follows a refused count is ignored until the write ends.",
          "recording static-program-limits"),
-    programming("All of a good message behind it.",
+    programming("All of a good message after it.",
                 [](NodeBench& node) {
                   // Behind the refused count all of a good message.
                   node.send_bytes(fmt::format("20 00 C8 00 05 20 {}", good()));
@@ -282,7 +282,7 @@ constexpr Clause kProgramClauses[] = {
     must(
         "morap.program.too-many-active",
         "A refused count stays, and is in use with what a good message before it had staged, if no "
-        "tick came between; then the read-back goes on with the fields behind the coefficients, as "
+        "tick came between; then the read-back goes on with the fields after the coefficients, as "
         "they lie in memory.",
         "recordings random/mini-count5-active, random/s1-race-905 and others", Profiles::kFirmware),
     variant("d", programming(
@@ -299,7 +299,7 @@ constexpr Clause kProgramClauses[] = {
                      },
                      kFresh)),
     variant("c", programming(
-                     "7 of the second, behind one of the first.",
+                     "7 of the second, after one of the first.",
                      [](NodeBench& node) {
                        expect_too_many(node, kSevenOfSecond, kReadSpeedSet, kSevenReadBack);
                      },
@@ -397,7 +397,7 @@ constexpr Clause kProgramClauses[] = {
 
     must("morap.program.truncated-unchanged",
          "A message that ends early leaves the status as it was.", "vector 36"),
-    programming("Behind 1, and behind a success.",
+    programming("After 1, and after a success.",
                 [](NodeBench& node) {
                   program(node, kGood);
                   node.expect_programming(kNothing);
@@ -420,7 +420,7 @@ constexpr Clause kProgramClauses[] = {
                   node.expect_programming(kSuccess);
                 }),
 
-    must("morap.program.surplus", "Bytes behind the checksum change nothing of a good message.",
+    must("morap.program.surplus", "Bytes after the checksum change nothing of a good message.",
          "vector 37"),
     programming("Three bytes more.",
                 [](NodeBench& node) {
@@ -428,7 +428,7 @@ constexpr Clause kProgramClauses[] = {
                   node.expect_programming(kSuccess);
                 }),
 
-    variant("wrong-then-right", programming("Behind a wrong checksum the right one.",
+    variant("wrong-then-right", programming("After a wrong checksum the right one.",
                                             [](NodeBench& node) {
                                               program(node, kGood, " A8 A9 A9 A9");
                                               node.expect_programming(kFailure);
@@ -442,7 +442,7 @@ constexpr Clause kProgramClauses[] = {
                   for (int i = 0; i < 4; ++i) node.expect_programming(kSuccess);
                 }),
 
-    variant("failure", programming("Four reads behind a refused message.",
+    variant("failure", programming("Four reads after a refused message.",
                                    [](NodeBench& node) {
                                      program(node, kGood, " A8");
                                      for (int i = 0; i < 4; ++i) node.expect_programming(kFailure);
@@ -460,7 +460,7 @@ constexpr Clause kProgramClauses[] = {
                   node.expect_programming(kSuccess);
                 }),
 
-    must("morap.program.after-failure", "Behind a refused message a good one is taken.",
+    must("morap.program.after-failure", "After a refused message a good one is taken.",
          "recording static-program-checksum"),
     programming("A bad one, then a good one.",
                 [](NodeBench& node) { expect_failure_then_success(node, " A8"); }),
@@ -501,7 +501,7 @@ constexpr Clause kProgramClauses[] = {
 
     must("morap.defaults.status", "Loading the stored controllers makes the programming status 1.",
          "vector 41", Profiles::kFirmware),
-    programming("Behind a success.",
+    programming("After a success.",
                 [](NodeBench& node) {
                   program(node, good());
                   node.settle();
@@ -509,7 +509,7 @@ constexpr Clause kProgramClauses[] = {
                   node.expect_programming(kNothing);
                 }),
 
-    variant("failure", programming("Behind a refused message.",
+    variant("failure", programming("After a refused message.",
                                    [](NodeBench& node) {
                                      program(node, kGood, " A8");
                                      node.send(kDefaultControllers);
@@ -545,7 +545,7 @@ constexpr Clause kProgramClauses[] = {
          "The stored controllers are in use from the next tick on and not before.",
          "recording static-program-timing", Profiles::kFirmware),
     programming(
-        "Read before and behind the tick.",
+        "Read before and after the tick.",
         [](NodeBench& node) {
           const auto before = node.read(kReadPositionSet, 4);
           program(node, "00 C8 00 00 00 00 00 00 00 00", " 37");

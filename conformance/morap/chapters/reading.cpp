@@ -111,11 +111,11 @@ constexpr Clause kReadingClauses[] = {
                    node.send(kReadMotorStatus);
                    for (const auto* const message :
                         {"20 00 C8 00 05", "20 00 C8 00", "22 00 CD CC 4C 3E 00 00 10 C1", "21"}) {
-                     node.about(fmt::format("behind {}", message));
+                     node.about(fmt::format("after {}", message));
                      node.send_bytes(message);
                      node.expect_read_on("02");
                    }
-                   node.about("behind a message that is taken, when it is in use");
+                   node.about("after a message that is taken, when it is in use");
                    node.send(proportional(kIdleRateHz, 1.0F));
                    node.settle();
                    node.expect_read_on("02");
@@ -137,16 +137,15 @@ constexpr Clause kReadingClauses[] = {
          [](NodeBench& node) {
            node.send(kReadMotorStatus);
            for (const auto* const id : {"06", "23", "87", "8C", "FF"}) {
-             node.about(fmt::format("behind {}", id));
+             node.about(fmt::format("after {}", id));
              node.send_bytes(id);
              node.expect_read_on("03");
            }
          }),
 
-    must("morap.read.surplus", "A byte behind a choice is no choice itself.",
-         "firmware, vector 21"),
+    must("morap.read.surplus", "A byte after a choice is no choice itself.", "firmware, vector 21"),
     from(kUncalibrated, Hazard::kState,
-         "The speed reference is chosen, with another choice behind it.",
+         "The speed reference is chosen, with another choice after it.",
          [](NodeBench& node) {
            node.send(kSpeed, 0.75F);
            node.send_bytes("82 81");
@@ -172,7 +171,7 @@ constexpr Clause kReadingClauses[] = {
 
     must("morap.read.snapshot", "The four bytes of a number are of one moment, that of the first.",
          "firmware, reading"),
-    from(kFresh, Hazard::kState, "The shaft turns behind the first byte.",
+    from(kFresh, Hazard::kState, "The shaft turns after the first byte.",
          [](NodeBench& node) {
            const auto before = turned_angle(node);
            node.expect_same(node.read_around(node.address(), 4, [&] { node.turn(5000); }), before);
@@ -188,7 +187,7 @@ constexpr Clause kReadingClauses[] = {
            node.about("the first four of 260 bytes");
            node.expect_same(Bytes{bytes}.first(std::min<std::size_t>(bytes.size(), 4)), first);
            const auto second = node.read_on(4);
-           node.about("the last four, behind a turn of the shaft");
+           node.about("the last four, after a turn of the shaft");
            node.expect_same(Bytes{bytes}.subspan(bytes.size() < 260 ? 0 : 256), second);
          }),
 
@@ -198,7 +197,7 @@ constexpr Clause kReadingClauses[] = {
     from(kUncalibrated, Hazard::kState, "The status, four times in one read.",
          [](NodeBench& node) { node.expect_bytes(kReadMotorStatus, "03 03 03 03"); }),
 
-    must("morap.read.set-filled", "Behind a controller set zeros are read.", "firmware, vector 26",
+    must("morap.read.set-filled", "After a controller set zeros are read.", "firmware, vector 26",
          Profiles::kFirmware),
     look("64 bytes are read.",
          [](NodeBench& node) {

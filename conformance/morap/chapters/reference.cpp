@@ -180,10 +180,10 @@ constexpr Clause kReferenceClauses[] = {
         kUncalibrated),
 
     must("morap.write.payload-no-command",
-         "Behind a command without payload nothing more is done in that write.",
+         "After a command without payload nothing more is done in that write.",
          "firmware: one write, one command"),
     reference(
-        "31 behind 0 and behind 16.",
+        "31 after 0 and after 16.",
         [](NodeBench& node) {
           node.send_bytes("00 1F");
           node.expect_status(MotorStatus::kDisabled);

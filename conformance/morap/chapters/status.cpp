@@ -102,9 +102,9 @@ constexpr Clause kStatusClauses[] = {
         kUncalibrated),
 
     must("morap.status.calibration-surplus",
-         "Bytes behind identifier 16 do not take the calibration away.", "firmware, vector 22"),
+         "Bytes after identifier 16 do not take the calibration away.", "firmware, vector 22"),
     state(
-        "16 with three bytes behind it.",
+        "16 with three bytes after it.",
         [](NodeBench& node) {
           node.send_bytes("10 01 02 03");
           node.expect_status(MotorStatus::kDisabled);
@@ -319,7 +319,7 @@ constexpr Clause kStatusClauses[] = {
           node.send(kReadMotorStatus);
           for (int id = 0; id < 256; ++id) {
             if (is_known(CommandId{static_cast<std::uint8_t>(id)})) continue;
-            node.about(fmt::format("behind identifier {}", id));
+            node.about(fmt::format("after identifier {}", id));
             node.send_bytes(std::vector{static_cast<std::byte>(id)});
             node.expect_read_on("01");
           }

@@ -118,7 +118,7 @@ constexpr Clause kTuneClauses[] = {
     must("morap.tune.at-tick", "Tuned parameters are in use from the next tick on and not before.",
          "firmware, tuner", Profiles::kFirmware),
     programming(
-        "Read before and behind the tick.",
+        "Read before and after the tick.",
         [](NodeBench& node) {
           node.tick();
           node.send_bytes("22 00 CD CC 4C 3E 00 00 10 C1");

@@ -95,7 +95,7 @@ class HostChecker final : public ProgramChecker {
     const auto& [command, size] = std::get<DecodedCommand>(decoded);
     if (data.size() > size) {
       complain(has_number(id) ? "overlong-number" : "surplus",
-               fmt::format("{} bytes behind {}", data.size() - size, static_cast<int>(id)));
+               fmt::format("{} bytes after {}", data.size() - size, static_cast<int>(id)));
     }
     if (find_reading(id) != nullptr) told.selected = id;
     judge_payload(command);

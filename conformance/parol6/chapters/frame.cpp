@@ -51,7 +51,7 @@ constexpr Clause kFrameClauses[] = {
                         [](BoardBench& board) {
                           const auto frame = encode(idle());
                           for (std::size_t split = 1; split < frame.size(); ++split) {
-                            board.about(fmt::format("a frame cut behind byte {}", split));
+                            board.about(fmt::format("a frame cut after byte {}", split));
                             board.send(std::span{frame}.first(split));
                             board.pause(2ms);
                             board.expect_answer(std::span{frame}.subspan(split));
@@ -136,7 +136,7 @@ constexpr Clause kFrameClauses[] = {
            const auto answer = board.ask(frame);
            board.expect(answer, "echo", 255);
            board.expect_silence();
-           board.about("the frame behind it");
+           board.about("the frame after it");
            board.ask(idle());
          }),
 
@@ -150,7 +150,7 @@ constexpr Clause kFrameClauses[] = {
                                    [&] { return static_cast<std::byte>(board.random() % 0xFF); });
              const auto frame = encode(idle());
              bytes.insert(bytes.end(), frame.begin(), frame.end());
-             board.about(fmt::format("a good frame behind {} bytes of noise", size));
+             board.about(fmt::format("a good frame after {} bytes of noise", size));
              board.expect_answer(bytes);
            }
          }),
@@ -164,7 +164,7 @@ constexpr Clause kFrameClauses[] = {
            const auto frame = encode(idle());
            board.about("a frame without its first byte");
            board.expect_silence(std::span{frame}.subspan(1));
-           board.about("the frame behind it");
+           board.about("the frame after it");
            board.expect_answer(frame);
          }),
 
@@ -178,7 +178,7 @@ constexpr Clause kFrameClauses[] = {
              auto bytes = *from_hex(hex);
              const auto frame = encode(idle());
              bytes.insert(bytes.end(), frame.begin(), frame.end());
-             board.about(fmt::format("a good frame behind {}", hex));
+             board.about(fmt::format("a good frame after {}", hex));
              board.expect_answer(bytes);
            }
          }),
@@ -196,8 +196,8 @@ constexpr Clause kFrameClauses[] = {
              frame[kCommandFrameSize - 1] = static_cast<std::byte>(second);
              board.about(fmt::format("a frame that ends with {:02X} {:02X}", first, second));
              board.expect_silence(frame);
-             board.about(fmt::format("the good frame behind one that ends with {:02X} {:02X}",
-                                     first, second));
+             board.about(fmt::format("the good frame after one that ends with {:02X} {:02X}", first,
+                                     second));
              board.expect_answer(encode(idle()));
            }
          }),
@@ -234,7 +234,7 @@ constexpr Clause kFrameClauses[] = {
                                  [&] { return static_cast<std::byte>(board.random() % 0xFF); });
            board.about("8192 bytes of noise without start bytes");
            board.expect_silence(bytes);
-           board.about("the frame behind 8192 bytes of noise");
+           board.about("the frame after 8192 bytes of noise");
            board.expect_answer(encode(idle()));
          }),
 
@@ -266,7 +266,7 @@ constexpr Clause kFrameClauses[] = {
          [](BoardBench& board) {
            for (const int check : {0x00, 0xD3, 0xE4, 0x2B}) {
              board.expect_silence(with_check(board, check));
-             board.about("the good frame behind it");
+             board.about("the good frame after it");
              board.expect_answer(encode(idle()));
            }
          }),

@@ -238,7 +238,7 @@ constexpr Clause kGoToClauses[] = {
            board.act(further);
            const auto answer = board.ask(further);
            if (answer.received - first.asked < 15ms) {
-             board.about("the next step, less than 15 ms behind the first");
+             board.about("the next step, less than 15 ms after the first");
              board.expect(answer, "position.j5", rest.position[kJ5].value + 1);
              board.expect(answer, "speed.j5", 50);
            }

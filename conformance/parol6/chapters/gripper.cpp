@@ -288,14 +288,14 @@ constexpr Clause kGripperClauses[] = {
         kFull),
 
     must("parol6.gripper.calibrates-anew",
-         "A calibration opens the gripper first, also behind one that was ended when it closed.",
+         "A calibration opens the gripper first, also after one that was ended when it closed.",
          "gripper"),
     grip(
         "The second one comes to the open end, and is done.",
         [](BoardBench& board) {
           calibrate_twice(board);
           const auto is_open = [](const Answer& answer) { return answer.gripper.position <= 2; };
-          board.about("a calibration behind one that was ended");
+          board.about("a calibration after one that was ended");
           board.expect_true(board.ask_until(idle(), is_open, kWholeWay).has_value(),
                             "gripper.position of 2 at most within 2.5 s", "never");
           board.expect_true(board.ask_until(idle(), is_calibrated, 35s).has_value(),

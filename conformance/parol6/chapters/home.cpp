@@ -50,7 +50,7 @@ Stretch after_one_switch(BoardBench& board) {
   board.touch("position.j1", 10'240);
   board.act(with_code(kEnable));
   board.act(with_code(kHome));
-  board.about("the run behind one that had seen the switch of J1 only");
+  board.about("the run after one that had seen the switch of J1 only");
   return run(board, idle(), 200ms);
 }
 
@@ -316,7 +316,7 @@ constexpr Clause kHomeClauses[] = {
     must("parol6.home.seen-stays",
          "After enable a joint that had seen its switch skips its seek in the next run.",
          "firmware", Profiles::kFirmware, "parol6.home.seen-forgotten"),
-    from(kEnabled, Hazard::kHome, "J1 does not seek its switch in the run behind an ended one.",
+    from(kEnabled, Hazard::kHome, "J1 does not seek its switch in the run after an ended one.",
          [](BoardBench& board) {
            const auto stretch = after_one_switch(board);
            board.expect_same(stretch.after, "position.j1", stretch.before);
@@ -326,7 +326,7 @@ constexpr Clause kHomeClauses[] = {
     should("parol6.home.seen-forgotten",
            "After enable every joint seeks its switch in the next run.",
            "document is silent; our choice", Profiles::kDocumented, "parol6.home.seen-stays"),
-    from(kEnabled, Hazard::kHome, "J1 seeks its switch in the run behind an ended one.",
+    from(kEnabled, Hazard::kHome, "J1 seeks its switch in the run after an ended one.",
          [](BoardBench& board) {
            const auto stretch = after_one_switch(board);
            expect_speed(board, stretch, 0, -2050);

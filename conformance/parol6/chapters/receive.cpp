@@ -34,7 +34,7 @@ constexpr std::size_t kCuts[] = {4, 30, 54};
 /// The next frame is the first behind it.
 void send_cut(BoardBench& board, std::size_t size) {
   board.send(Bytes{encode(idle())}.first(size));
-  board.about(fmt::format("the first frame behind one cut after {} bytes", size));
+  board.about(fmt::format("the first frame after one cut after {} bytes", size));
 }
 
 template <class Look>
@@ -68,7 +68,7 @@ constexpr Clause kReceiveClauses[] = {
            for (const auto length : kOtherLengths) {
              board.about(fmt::format("an idle frame of length {}", length));
              board.expect_silence(with_length(idle(), length));
-             board.about(fmt::format("the frame behind one of length {}", length));
+             board.about(fmt::format("the frame after one of length {}", length));
              board.ask(idle());
            }
          }),
@@ -145,11 +145,11 @@ constexpr Clause kReceiveClauses[] = {
          "and reception goes on at the beginning of the store.",
          "firmware as built by the vendor; undefined behaviour", Profiles::kFirmware,
          "parol6.receive.length-zero-harmless"),
-    from(kFresh, Hazard::kState, "The 256th byte behind a length of 0 is the next length.",
+    from(kFresh, Hazard::kState, "The 256th byte after a length of 0 is the next length.",
          [](BoardBench& board) {
            board.spoil_memory();
            board.send(kLengthZero);
-           board.about("255 bytes behind a length of 0");
+           board.about("255 bytes after a length of 0");
            board.expect_silence(std::vector(255, std::byte{0x55}));
            board.about("the payload of a frame, as its 256th byte says 52");
            board.expect(board.expect_answer(Bytes{encode(with_code(42))}.subspan(kHeaderSize - 1)),
@@ -157,12 +157,12 @@ constexpr Clause kReceiveClauses[] = {
          }),
 
     should("parol6.receive.length-zero-harmless",
-           "A length of 0 is no frame, and the good frame directly behind it is answered.",
+           "A length of 0 is no frame, and the good frame directly after it is answered.",
            "document is silent; our choice", Profiles::kDocumented, "parol6.receive.length-zero"),
     from(kFresh, Hazard::kState, "A length of 0 costs no good frame.",
          [](BoardBench& board) {
            board.spoil_memory();
-           board.about("a good frame behind FF FF FF 00");
+           board.about("a good frame after FF FF FF 00");
            board.send(kLengthZero);
            board.expect_answer(encode(idle()));
          }),
@@ -176,7 +176,7 @@ constexpr Clause kReceiveClauses[] = {
              board.about("FF FF FF 01 and a byte");
              board.expect_silence(
                  std::vector{kStartByte, kStartByte, kStartByte, std::byte{1}, byte});
-             board.about("the frame behind one of length 1");
+             board.about("the frame after one of length 1");
              board.expect_answer(encode(idle()));
            }
          }),
@@ -185,14 +185,14 @@ constexpr Clause kReceiveClauses[] = {
          "One start byte directly in front of a good frame costs that frame and the next four.",
          "firmware: the third start byte becomes a length of 255; vector R3", Profiles::kFirmware,
          "parol6.receive.resync"),
-    look("The sixth frame behind a stray start byte is the first to be answered.",
+    look("The sixth frame after a stray start byte is the first to be answered.",
          [](BoardBench& board) {
            board.send(std::vector{kStartByte});
            for (int i = 1; i <= 5; ++i) {
-             board.about(fmt::format("frame {} behind a stray FF", i));
+             board.about(fmt::format("frame {} after a stray FF", i));
              board.expect_silence(encode(idle()));
            }
-           board.about("frame 6 behind a stray FF");
+           board.about("frame 6 after a stray FF");
            board.expect_answer(encode(idle()));
          }),
 
@@ -204,7 +204,7 @@ constexpr Clause kReceiveClauses[] = {
     look("Runs of start bytes in front of a good frame cost nothing.",
          [](BoardBench& board) {
            for (const std::size_t size : {1U, 2U, 3U, 7U, 300U}) {
-             board.about(fmt::format("a good frame behind {} start bytes", size));
+             board.about(fmt::format("a good frame after {} start bytes", size));
              board.send(std::vector(size, kStartByte));
              board.expect_answer(encode(idle()));
            }
@@ -220,7 +220,7 @@ constexpr Clause kReceiveClauses[] = {
            after_each_cut(board, [&](std::size_t size) {
              board.expect_silence(encode(idle()));
              for (const auto* which : {"second", "third"}) {
-               board.about(fmt::format("the {} frame behind one cut after {} bytes", which, size));
+               board.about(fmt::format("the {} frame after one cut after {} bytes", which, size));
                board.expect_answer(encode(idle()));
              }
            });
@@ -228,7 +228,7 @@ constexpr Clause kReceiveClauses[] = {
 
     should("parol6.receive.cut-harmless", "A frame cut short does not take the next one with it.",
            "document is silent; our choice", Profiles::kDocumented, "parol6.receive.cut-short"),
-    look("The frame behind one cut short is answered.",
+    look("The frame after one cut short is answered.",
          [](BoardBench& board) {
            after_each_cut(board, [&](std::size_t) { board.expect_answer(encode(idle())); });
          }),

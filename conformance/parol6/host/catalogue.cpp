@@ -23,7 +23,7 @@ constexpr std::array kRequirements{
     of_host(
         "parol6.host.stray-bytes", Level::kShould,
         "A host sends nothing between its frames but what resets a receiver: at least 256 equal "
-        "bytes, perhaps with a frame of 255 zeros behind them.",
+        "bytes, perhaps with a frame of 255 zeros after them.",
         "document, packet table; firmware: a frame cut short takes the next one with it"),
     of_host(
         "parol6.host.frame-check", Level::kShould,
