@@ -12,6 +12,7 @@ namespace armjig::morap::conformance {
 [[nodiscard]] Chapter reference_chapter();
 [[nodiscard]] Chapter output_chapter();
 [[nodiscard]] Chapter program_chapter();
+[[nodiscard]] Chapter stored_chapter();
 [[nodiscard]] Chapter tune_chapter();
 [[nodiscard]] Chapter loop_chapter();
 [[nodiscard]] Chapter motion_chapter();

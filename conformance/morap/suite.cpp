@@ -50,6 +50,7 @@ Suite suite() noexcept {
       reference_chapter(),
       output_chapter(),
       program_chapter(),
+      stored_chapter(),
       tune_chapter(),
       loop_chapter(),
       motion_chapter(),

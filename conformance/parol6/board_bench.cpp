@@ -373,9 +373,9 @@ void BoardBench::home() {
 }
 
 /// The board would close any distance in 10 ms if it could. Each piece is counted from the one
-/// before and not from where the arm is, so that an arm that goes elsewhere is seen to stray. At the
-/// speeds that the demonstration leaves as the most, a board with passes of 250 us steps in every
-/// second one: 2000 steps/s.
+/// before and not from where the arm is, so that an arm that goes elsewhere is seen to stray. At
+/// the speeds that the demonstration leaves as the most, a board with passes of 250 us steps in
+/// every second one: 2000 steps/s.
 void BoardBench::walk_to_standby() {
   constexpr int kPiece = 15;
   constexpr int kMostPieces = 20'000;

@@ -17,5 +17,6 @@ namespace armjig::parol6::conformance {
 [[nodiscard]] Chapter home_chapter();
 [[nodiscard]] Chapter demo_chapter();
 [[nodiscard]] Chapter gripper_chapter();
+[[nodiscard]] Chapter set_point_chapter();
 
 }  // namespace armjig::parol6::conformance

@@ -14,8 +14,6 @@
 namespace armjig::parol6::conformance {
 namespace {
 
-constexpr double kClockError = 0.02;  // RC oscillator: 1 %, and a margin
-
 double seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
 
 /// How long a pass of the board's loop may take. Recordings have 20 to 100 us; a board that

@@ -12,6 +12,9 @@
 /// What cases say about joints that move or stand.
 namespace armjig::parol6::conformance {
 
+/// By how much a board's time is wrong, which has an RC oscillator: 1 %, and a margin.
+inline constexpr double kClockError = 0.02;
+
 /// The first and the last answer of a stretch of time in which a command acted.
 struct Stretch {
   Answer before;

@@ -62,6 +62,7 @@ Suite suite() noexcept {
       home_run_chapter(),
       demo_chapter(),
       gripper_chapter(),
+      set_point_chapter(),
       sessions_chapter("parol6.sessions.as-reference", "firmware, as the emulator has it"),
       chapter("Host programs", programs::host_requirements()),
   };

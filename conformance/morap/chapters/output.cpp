@@ -429,6 +429,8 @@ constexpr Clause kOutputClauses[] = {
               node.send(kDisable);
             })),
 
+    must("morap.current.zero", "Without a current 0 is read.", "firmware, current"),
+    fresh("At power-on.", [](NodeBench& node) { node.expect_number(kReadCurrent, 0.0F); }),
     variant("ended", at_rest([](NodeBench& node) {
               constexpr float kNoticed = 0.01F;  // A, four steps
               node.send(kVoltage, 1.5F);
@@ -440,9 +442,6 @@ constexpr Clause kOutputClauses[] = {
               node.about("once nothing drives the motor any more");
               node.expect_near(kReadCurrent, 0.0, double{driven} / 2);
             })),
-
-    must("morap.current.zero", "Without a current 0 is read.", "firmware, current"),
-    fresh("At power-on.", [](NodeBench& node) { node.expect_number(kReadCurrent, 0.0F); }),
 
     must("morap.tick.idle-rate", "Without a feedback loop a tick comes every 5.0005 ms.",
          "recording static-tick-timing"),

@@ -4,12 +4,12 @@
 namespace armjig::morap::conformance {
 namespace {
 
-template <CommandId between>
+template <CommandId between, auto... number>
 void kept_over(NodeBench& node) {
   node.send(kPosition, 0.25F);
   node.send(kSpeed, 0.75F);
   node.send(kDisable);  // nothing shall run, whatever comes
-  node.send(between);
+  node.send(between, number...);
   node.expect_number(kReadPositionReference, 0.25F);
   node.expect_number(kReadSpeedReference, 0.75F);
 }
@@ -129,17 +129,8 @@ constexpr Clause kReferenceClauses[] = {
     must("morap.reference.over-calibration", "Calibrating keeps them as well.",
          "firmware, commands"),
     reference("Both, then 16.", on<kept_over<kCalibrateZero>>, kUncalibrated),
-    variant("angle", reference(
-                         "Both, then 17.",
-                         [](NodeBench& node) {
-                           node.send(kPosition, 0.25F);
-                           node.send(kSpeed, 0.75F);
-                           node.send(kDisable);
-                           node.send(kCalibrateAngle, 1.0F);
-                           node.expect_number(kReadPositionReference, 0.25F);
-                           node.expect_number(kReadSpeedReference, 0.75F);
-                         },
-                         kUncalibrated)),
+    variant("angle",
+            reference("Both, then 17.", on<kept_over<kCalibrateAngle, 1.0F>>, kUncalibrated)),
 
     must("morap.write.short-float",
          "A reference with fewer than four bytes leaves the one before in place.", "vector 15"),

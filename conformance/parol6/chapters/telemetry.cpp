@@ -32,8 +32,6 @@ constexpr Duration kDropped = 100ms;
 
 constexpr GripperSetPoint kElsewhere{.speed = 77, .id = 5};
 
-constexpr double kClockError = 0.02;  // the board runs from an RC oscillator: 1 %, and a margin
-
 /// The board took each frame between when it was handed over and when its answer had come.
 void expect_interval(BoardBench& board, const Answer& before, const Answer& after) {
   const auto least = ticks_in(after.asked - before.received) * (1 - kClockError) - 1;
