@@ -184,12 +184,18 @@ Outcome<void> StageOn<Port>::renew_models() {
 }
 
 template <class Port>
-Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
-  // No case keeps silent for long: this program had no time, and the target stands still now, as at
-  // the beginning of each case.
+Outcome<void> StageOn<Port>::watch_over() {
+  if (!target_->is_unsupervised()) return {};
   if (auto resumed = target_->resume(); !resumed) {
     return problem(resumed.error().code, "--target", "it cannot be watched over any more");
   }
+  return problem(ErrorCode::kForbidden, "--target",
+                 "this program had no time for it, and its supervisor stopped it");
+}
+
+template <class Port>
+Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
+  if (auto watched = watch_over(); !watched) return tl::unexpected{watched.error()};
   const auto idle = target_->port().now() - last_end_;
   auto played = in_order(play_host(target_->port(), script, setup_.how));
   if (!played && played.error().code == ErrorCode::kForbidden) {
@@ -197,6 +203,7 @@ Outcome<BothHeard> StageOn<Port>::play(const Script& script) {
     if (auto why = target_->last_refusal()) refused.hint = std::move(why->reason);
     return tl::unexpected{std::move(refused)};
   }
+  if (auto watched = watch_over(); !watched) return tl::unexpected{watched.error()};
   last_end_ = target_->port().now();
   for (auto& model : models_) {
     if (idle > Duration{}) rest(model.port(), idle);

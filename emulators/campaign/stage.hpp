@@ -49,8 +49,9 @@ class Stage {
   [[nodiscard]] virtual Outcome<void> renew_models() = 0;
 
   /// Plays it to both, where they are now, and listens a little longer. What ends a link is no
-  /// problem but heard; a problem is that the guard refused something (`kForbidden`). If it did
-  /// because this program was silent for too long, the next one is played under a new supervisor.
+  /// problem but heard; a problem is that the guard refused something (`kForbidden`), or stopped
+  /// the target because this program had been silent for too long: it does not stand where the
+  /// models do then. The next one is played under a new supervisor.
   [[nodiscard]] virtual Outcome<BothHeard> play(const Script& script) = 0;
 
   /// The same with a model in the place of a live target, both as new. All comes to it as unevenly
@@ -95,6 +96,8 @@ class StageOn final : public Stage {
   using Models = std::vector<Rig<Port>>;
 
   [[nodiscard]] Outcome<void> make_target();
+  /// Whether the target was not left alone for too long.
+  [[nodiscard]] Outcome<void> watch_over();
   [[nodiscard]] Outcome<Rig<Port>> make_model() const;
   [[nodiscard]] Outcome<Models> make_models() const;
   /// What a target said, and beside it what models say that get it as that one may have.

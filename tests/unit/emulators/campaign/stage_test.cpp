@@ -2,16 +2,23 @@
 #include "emulators/campaign/stage.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/device.hpp"
@@ -21,9 +28,11 @@
 #include "emulators/campaign/author.hpp"
 #include "emulators/campaign/survey.hpp"
 #include "emulators/campaign/talk.hpp"
+#include "harness/link/port_around.hpp"
 #include "harness/rig/judge.hpp"
 #include "harness/wire/parol6/dissector.hpp"
 #include "harness/wire/parol6/frame.hpp"
+#include "tests/unit/support/devices.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -133,6 +142,59 @@ TEST(Stage, HasModelsThatDifferWhereItMattersHowFarApartMessagesCame) {
     places.insert(field_value(*find_field(fourth.fields, "position.j1"), fourth.raw));
   }
   EXPECT_GT(*places.rbegin() - *places.begin(), 2);
+}
+
+/// An emulated board in memory with a supervisor of its own.
+class SupervisedBoard final : public StreamAround {
+ public:
+  using StreamAround::StreamAround;
+  Result<void> write(Bytes bytes) override { return inner().write(bytes); }
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
+    return inner().read(into, deadline);
+  }
+  [[nodiscard]] std::optional<Lifeline> lifeline() const override {
+    return Lifeline{STDERR_FILENO, [](int /*descriptor*/, Bytes /*message*/) noexcept {}};
+  }
+};
+
+Rig<StreamPort> supervised_board() {
+  auto wiring = test::wiring<cli::OnStream>("parol6");
+  wiring.open_real = [](const Target& /*place*/,
+                        const SerialLine& /*line*/) -> Outcome<std::unique_ptr<StreamPort>> {
+    auto board = test::wiring<cli::OnStream>("parol6").open_emulated(*parse_target("emulated:"));
+    return std::make_unique<SupervisedBoard>(*std::move(board));
+  };
+  return *Rig<StreamPort>::open(wiring, rig_at("pty:/dev/null"));
+}
+
+/// As they end when they have stopped an arm of which nothing is heard.
+void end_supervisors() {
+  for (const auto& entry : std::filesystem::directory_iterator{"/proc"}) {
+    std::ifstream stat{entry.path() / "stat"};
+    pid_t pid{};
+    pid_t parent{};
+    std::string name;
+    char state{};
+    if (stat >> pid >> name >> state >> parent && parent == ::getpid() &&
+        name == "(arm-supervisor)") {
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, nullptr, 0);
+    }
+  }
+}
+
+/// The target stands then where the models go on.
+TEST(Stage, RefusesWhatComesAfterAStopOfItsSupervisor) {
+  StageSetup<StreamPort> setup;
+  setup.make_target = [] { return Outcome<Rig<StreamPort>>{supervised_board()}; };
+  StageOn<StreamPort> stage{std::move(setup)};
+  ASSERT_TRUE(stage.reset());
+  ASSERT_TRUE(stage.play({}));
+  end_supervisors();
+  const auto played = stage.play({});
+  ASSERT_FALSE(played);
+  EXPECT_EQ(played.error().code, ErrorCode::kForbidden);
+  EXPECT_TRUE(stage.play({}));
 }
 
 }  // namespace
