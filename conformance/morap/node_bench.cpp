@@ -250,6 +250,16 @@ void NodeBench::power_up(std::int64_t shaft) {
   next_tick_ = now() + tick_period(kIdleRateHz);
 }
 
+void NodeBench::switch_on() {
+  prepare(kCalibrationUnknown);
+  settle();
+  rest();
+  touch("power", 1);
+  rate_hz_ = kIdleRateHz;
+  next_tick_ = now() + tick_period(kIdleRateHz);
+  if (subject_.is_real) pause(std::chrono::seconds{1});
+}
+
 /// What is not acknowledged here is for the cases to find.
 void NodeBench::prepare(const Command& command) {
   if (!is_deaf()) std::ignore = write(subject_.address, encode(command));
@@ -268,6 +278,7 @@ void NodeBench::bring_to(std::size_t start) {
   is_slow_ = start == kSlow;
   if (start == kListening) return;
   if (start == kFresh) return power_up(0);
+  if (start == kSwitchedOn) return switch_on();
   if (subject_.is_real && shaft_ == 0) hold(1);
   if (start == kFree || start == kSlow) {
     if (!subject_.is_real) power_up(1);

@@ -25,6 +25,7 @@ enum Start : std::uint8_t {
   kFresh,         ///< just switched on, the shaft held, all its ticks still to come
   kFree,          ///< just switched on, the shaft free to turn, calibrated at 0
   kSlow,          ///< likewise, and loops that run have ticks of `kSlowRateHz`
+  kSwitchedOn,    ///< at rest when it was switched on; nothing was said to it since
 };
 
 /// A conversation with a motor node, in the words of its protocol.
@@ -136,6 +137,7 @@ class NodeBench final : public BusBench {
   void brake();
   void hold(std::int64_t shaft);
   void power_up(std::int64_t shaft);
+  void switch_on();
   void leave_slow_loop();
   void keep_pace();
 

@@ -19,6 +19,7 @@ constexpr std::array kStarts{
     StartState{"fresh from power-up, the shaft held", Hazard::kState},
     StartState{"calibrated, the shaft free", Hazard::kProgram},
     StartState{"calibrated, the shaft free, for slow loops", Hazard::kProgram},
+    StartState{"switched on", Hazard::kState},
 };
 
 constexpr std::array kSubjects{

@@ -179,6 +179,109 @@ void stays(NodeBench& node) {
   node.send(kDisable);
 }
 
+/// A voltage, and between which speeds the shaft turned when it was computed, rad/s.
+struct Turning {
+  double volts;
+  double least;
+  double most;
+};
+
+/// A voltage is computed of the speed up to a tick before, which may be as far beyond what is seen
+/// as the speed changes meanwhile.
+Turning read_turning(NodeBench& node) {
+  const auto first = read_angle(node);
+  node.pause(10ms);
+  const auto before = read_angle(node);
+  const double volts{node.number(kReadVoltage)};
+  node.pause(5ms);
+  const auto after = read_angle(node);
+  const auto speeds = [](const Reading& from, const Reading& to) {
+    const double angle = to.angle - from.angle;
+    return std::minmax({per_second(angle, to.latest - from.earliest),
+                        per_second(angle, to.earliest - from.latest)});
+  };
+  const auto [least, most] = speeds(first, before);
+  const auto [then_least, then_most] = speeds(before, after);
+  const double change = std::fabs((then_least + then_most) - (least + most)) / 2;
+  return {volts, std::min(least, then_least) - change, std::max(most, then_most) + change};
+}
+
+/// While the shaft gets faster or slower, the voltage is what `law` makes of its speed. Looks for a
+/// while, and leaves the case open if nothing that was seen tells it from the voltage at rest.
+template <class Law>
+void expect_law(NodeBench& node, Law law) {
+  constexpr double kSlack = 0.3;  // V: levels and counts
+  constexpr double kTelling = 1;  // V
+  bool is_told = false;
+  for (const auto end = node.now() + 400ms; node.now() < end && !node.is_over();) {
+    const auto seen = read_turning(node);
+    const double low = law(seen.least) - kSlack;
+    const double high = law(seen.most) + kSlack;
+    is_told = is_told || low > law(0) + kTelling || high < law(0) - kTelling;
+    node.expect_in_time({seen.volts, low, high, "V"},
+                        fmt::format("{:.2f} to {:.2f} V at {:.2f} to {:.2f} rad/s", low, high,
+                                    seen.least, seen.most),
+                        fmt::format("{:.2f} V", seen.volts));
+  }
+  if (!is_told) node.leave_open("this shaft does not turn fast enough to tell");
+}
+
+template <int sign>
+void keeps_torque(NodeBench& node) {
+  constexpr double kTorqueAsked = sign * 1.0;  // N m
+  constexpr double kMostVolts = 20;
+  const MotorLaw law{node.motor()};
+  node.send(kTorque, static_cast<float>(kTorqueAsked));
+  expect_law(node, [&](double speed) {
+    return std::clamp(law.torque_voltage(kTorqueAsked, speed), -kMostVolts, kMostVolts);
+  });
+  node.send(kDisable);
+}
+
+float turn_fast(NodeBench& node, int sign) {
+  const float fast = static_cast<float>(sign * 4 * node.motor().standstill_levels) * kVoltsPerLevel;
+  node.send(kVoltage, fast);
+  node.pause(1s);
+  return fast;
+}
+
+template <int sign>
+void reverses_within_limit(NodeBench& node) {
+  const MotorLaw law{node.motor()};
+  const float back = -turn_fast(node, sign);
+  node.send(kVoltage, back);
+  expect_law(node, [&](double speed) { return law.limited(double{back}, speed); });
+  node.send(kDisable);
+}
+
+/// The voltage at the first tick after one of 0; none if nobody knows that it was read before the
+/// shaft had come to rest.
+std::optional<double> first_of_brake(NodeBench& node, int sign) {
+  constexpr auto kBrake = 12ms;
+  const float fast = turn_fast(node, sign);
+  const auto begin = node.now();
+  node.send(kVoltage, 0.0F);
+  while (!node.is_over() && node.now() - begin < kBrake) {
+    const double volts{node.number(kReadVoltage)};
+    if (std::fabs(volts - double{fast}) < 0.1) continue;
+    return node.now() - begin < kBrake ? std::optional{volts} : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// A node that shorted its motor at once would drive far more than the rated current.
+template <int sign>
+void brakes_within_limit(NodeBench& node) {
+  constexpr int kTries = 5;
+  constexpr double kLeast = 1;  // V
+  std::optional<double> first;
+  for (int i = 0; i < kTries && !first && !node.is_over(); ++i) first = first_of_brake(node, sign);
+  node.send(kDisable);
+  if (!first) return node.leave_open("this bus is too slow to be read while a shaft brakes");
+  node.expect_true(sign * *first > kLeast, fmt::format("{} V or more at first", sign * kLeast),
+                   fmt::format("{:.2f} V", *first));
+}
+
 /// More than at standstill, which the shaft gets as it turns faster.
 template <int sign>
 void reaches_voltage(NodeBench& node) {
@@ -348,6 +451,22 @@ constexpr Clause kMotionClauses[] = {
          "firmware, voltage mode; recording loop-voltage"),
     variant("forwards", moving(on<reaches_voltage<1>>)),
     variant("backwards", moving(on<reaches_voltage<-1>>)),
+
+    must("morap.motion.limited",
+         "Whatever it is asked for, the voltage of a shaft that turns is within what drives the "
+         "rated current at its speed.",
+         "firmware, voltage mode; recording stim-voltage"),
+    variant("zero", moving(on<brakes_within_limit<1>>)),
+    variant("zero-backwards", moving(on<brakes_within_limit<-1>>)),
+    variant("reversed", moving(on<reverses_within_limit<1>>)),
+    variant("reversed-backwards", moving(on<reverses_within_limit<-1>>)),
+
+    must("morap.motion.torque",
+         "A torque gets the voltage of its current and that of the motion, as fast as the shaft "
+         "turns.",
+         "firmware, torque mode; recording stim-torque", Profiles::kFirmware),
+    variant("forwards", moving(on<keeps_torque<1>>)),
+    variant("backwards", moving(on<keeps_torque<-1>>)),
 
     must("morap.motion.start-current",
          "At a start the current is that of the voltage at standstill, and never more.",

@@ -430,7 +430,8 @@ constexpr Clause kOutputClauses[] = {
             })),
 
     must("morap.current.zero", "Without a current 0 is read.", "firmware, current"),
-    fresh("At power-on.", [](NodeBench& node) { node.expect_number(kReadCurrent, 0.0F); }),
+    from(kSwitchedOn, Hazard::kState, "At power-on.",
+         [](NodeBench& node) { node.expect_number(kReadCurrent, 0.0F); }),
     variant("ended", at_rest([](NodeBench& node) {
               constexpr float kNoticed = 0.01F;  // A, four steps
               node.send(kVoltage, 1.5F);

@@ -59,6 +59,17 @@ constexpr Clause kPenClauses[] = {
                }
              }),
 
+    must("morap.pen.acknowledges", "The pen acknowledges the bytes of a command.",
+         "reference, pen; recording pen-set-position"),
+    with_pen("2, and 7 with a byte.",
+             [](NodeBench& node) {
+               if (!node.write(kPen, {}).is_addressed) {
+                 return node.skip("needs a pen; none answers on this bus");
+               }
+               tell(node, "02");
+               tell(node, "07 00");
+             }),
+
     must("morap.pen.at-boot", "At power-on the pen is retracted, at 45 degrees.", "vector P1"),
     with_pen("It is looked at, also after a command and power.",
              [](NodeBench& node) {

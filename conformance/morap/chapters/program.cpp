@@ -118,7 +118,8 @@ constexpr Clause kProgramClauses[] = {
     must("morap.program.status-at-boot", "After power-on the programming status is 1.",
          "document, programming status; vector 3"),
     programming(
-        "It is read first.", [](NodeBench& node) { node.expect_programming(kNothing); }, kFresh),
+        "It is read first.", [](NodeBench& node) { node.expect_programming(kNothing); },
+        kSwitchedOn),
 
     must("morap.program.success",
          "A parameter message with the right checksum makes the programming status 2.",

@@ -27,18 +27,19 @@ constexpr Clause kReadingClauses[] = {
          }),
 
     must("morap.read.angle-at-boot", "At power-on the angle is 0.", "firmware, vector 1"),
-    from(kFresh, Hazard::kState, "It is read first.", on<zero_at_boot<kReadAngle>>),
+    from(kSwitchedOn, Hazard::kState, "It is read first.", on<zero_at_boot<kReadAngle>>),
 
     must("morap.read.voltage-at-boot", "At power-on the applied voltage is 0.",
          "firmware, vector 6"),
-    from(kFresh, Hazard::kState, "It is read first.", on<zero_at_boot<kReadVoltage>>),
+    from(kSwitchedOn, Hazard::kState, "It is read first.", on<zero_at_boot<kReadVoltage>>),
 
     must("morap.read.position-at-boot", "At power-on the position reference is 0.",
          "firmware, vector 6"),
-    from(kFresh, Hazard::kState, "It is read first.", on<zero_at_boot<kReadPositionReference>>),
+    from(kSwitchedOn, Hazard::kState, "It is read first.",
+         on<zero_at_boot<kReadPositionReference>>),
 
     must("morap.read.speed-at-boot", "At power-on the speed reference is 0.", "firmware, vector 6"),
-    from(kFresh, Hazard::kState, "It is read first.", on<zero_at_boot<kReadSpeedReference>>),
+    from(kSwitchedOn, Hazard::kState, "It is read first.", on<zero_at_boot<kReadSpeedReference>>),
 
     must("morap.read.address", "Identifier 136 chooses the node's own seven-bit address.",
          "document; vectors 4 and 5"),

@@ -66,7 +66,7 @@ constexpr Clause kStatusClauses[] = {
          "document, motor status; vector 2"),
     state(
         "It is read first.", [](NodeBench& node) { node.expect_status(kNeedsCalibration); },
-        kFresh),
+        kSwitchedOn),
 
     must("morap.status.calibrated-zero",
          "Identifier 16 ends the need for calibration: the status becomes 2.",

@@ -16,7 +16,23 @@ void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
   node.expect_same(node.read(selector, 31), before);
 }
 
+/// As they are at power-on, and when they were loaded.
+template <CommandId selector>
+void expect_stored(NodeBench& node) {
+  const auto at_boot = node.read(selector, 59);
+  node.send(kDefaultControllers);
+  node.settle();
+  node.expect_same(node.read(selector, 59), at_boot);
+}
+
 constexpr Clause kStoredClauses[] = {
+    must("morap.defaults.at-boot", "At power-on the stored controllers are in use.",
+         "document; firmware", Profiles::kFirmware),
+    variant("position", programming("The position controller is read, then loaded and read.",
+                                    on<expect_stored<kReadPositionSet>>, kSwitchedOn)),
+    variant("speed", programming("The speed controller is read, then loaded and read.",
+                                 on<expect_stored<kReadSpeedSet>>, kSwitchedOn)),
+
     must("morap.defaults.status", "Loading the stored controllers makes the programming status 1.",
          "vector 41", Profiles::kFirmware),
     programming("After a success.",
