@@ -19,9 +19,6 @@ constexpr double kNowhere = 2.0;
 /// figures of way-points are known to 0.000001.
 constexpr double kBeyond = 0.002;
 
-/// The server looks every 10 ms and five calls; stopping the arm takes three pauses of 10 ms.
-Duration look_time(const ServerBench& server) { return 120ms + 6 * server.noise(); }
-
 void glance(ServerBench& server) { server.pause(30ms + 4 * server.noise()); }
 
 /// Around `point`, just too far away in one component at a time.
@@ -37,6 +34,8 @@ void pass_by(ServerBench& server, const Place& point) {
 }
 
 }  // namespace
+
+Duration look_time(const ServerBench& server) { return 120ms + 6 * server.noise(); }
 
 void hold(ServerBench& server) { server.touch("arm.held", 1); }
 

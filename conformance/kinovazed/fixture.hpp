@@ -16,6 +16,10 @@ namespace armjig::kinovazed::conformance {
 void hold(ServerBench& server);
 void let_go(ServerBench& server);
 
+/// In which a server has looked at its arm: it does every 10 ms and five calls, and stopping the
+/// arm before takes three pauses of 10 ms.
+[[nodiscard]] Duration look_time(const ServerBench& server);
+
 /// Puts the hand there and holds it. The server may not have looked at the arm yet.
 void hold_at(ServerBench& server, const Place& place);
 /// The same of one component, from 0; the others stay.

@@ -127,17 +127,26 @@ void points(ServerBench& server) {
   expect_points(server, to_string(objective), first, way_points);
 }
 
-/// Current at `place` goes to `target`, and the hand is led away before the server looks again.
+/// Current at `place` goes to `target`. The hand is led away before the server, which stops the arm
+/// first, looks whether it is there.
 void expect_current(ServerBench& server, const Place& place, const Place& target) {
-  auto away = place;
-  away[0] += 0.2;
+  constexpr std::size_t kSideways = 0;
+  constexpr double kAside = 0.2;      // m
+  constexpr Duration kPauses = 40ms;  // three when it stops the arm, and the one before a poll
+  const auto until_it_looks = kPauses + server.noise() - server.link_noise();
   server.begin_race();
   for (const double side : {-1.0, 1.0}) {
     visit(server, place);
+    const auto said = server.now();
     server.say("RunObjective:Current");
     server.pause(20ms + server.noise());
-    visit(server, away);
+    hold_at(server, kSideways, place[kSideways] + kAside);
+    const bool is_in_time = server.now() - said <= until_it_looks;
+    server.pause(look_time(server));
     server.expect(Event::kAccepted);
+    if (!is_in_time) {
+      return server.leave_open("whoever leads this arm takes longer than the server to look");
+    }
     server.about("Current, with the hand led away");
     server.expect_quiet(200ms);
     visit(server, near(target, 0.94 * side));
