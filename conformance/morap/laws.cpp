@@ -40,6 +40,10 @@ double MotorLaw::angle(int counts) const noexcept {
   return 2 * std::numbers::pi * counts / counts_per_turn_ / gear_ratio_;
 }
 
+double MotorLaw::current(double torque) const noexcept {
+  return std::min(std::fabs(torque) / torque_per_amp_, rated_current_);
+}
+
 double MotorLaw::torque_voltage(double torque, double speed) const noexcept {
   const double current = std::clamp(torque / torque_per_amp_, -rated_current_, rated_current_);
   return back_emf_ * speed + resistance_ * current;

@@ -26,6 +26,8 @@ class MotorLaw {
 
   /// Of a shaft that has turned by so many counts.
   [[nodiscard]] double angle(int counts) const noexcept;
+  /// The amount of that for a torque.
+  [[nodiscard]] double current(double torque) const noexcept;
   /// The voltage for a torque, whose current is limited.
   [[nodiscard]] double torque_voltage(double torque, double speed) const noexcept;
   /// Keeps the current of a voltage within the rated one.

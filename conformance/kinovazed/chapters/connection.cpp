@@ -242,6 +242,14 @@ constexpr Clause kConnectionClauses[] = {
            server.expect_beat(69);
            server.accept("MoveJoystick:0:0:0");
          }),
+    variant("frozen",
+            from(kReady, Hazard::kMove, "One that connects while it is frozen unfreezes it.",
+                 [](ServerBench& server) {
+                   server.perform("Freeze", Event::kFreezed);
+                   connect_anew(server);
+                   server.expect_beat(13);
+                   server.perform("Unfreeze", Event::kUnfreezed);
+                 })),
 
     must("kinovazed.connection.no-watchdog",
          "Losing a client does not stop an objective; its ObjectiveDone goes to the next client.",

@@ -70,10 +70,11 @@ void break_mode_release(ServerBench& server) {
   server.touch("arm.fail.joystick_release", 0);
 }
 
-void reset_waiting(ServerBench& server) {
+void reset_waiting(ServerBench& server, std::string_view said = "") {
   server.spoil();
   server.as(1);
   server.connect();
+  if (!said.empty()) server.say(said);
   server.pause(100ms);
   server.throw_away();
   server.pause(100ms);
@@ -371,6 +372,12 @@ constexpr Clause kDeathClauses[] = {
                  server.expect_true(!server.is_served(), "a process that has ended",
                                     "a client that is served");
                })),
+    variant("after-line", dies("Nor after one that had said something.",
+                               [](ServerBench& server) {
+                                 reset_waiting(server, "EStop");
+                                 server.expect_true(!server.is_served(), "a process that has ended",
+                                                    "a client that is served");
+                               })),
 
     should("kinovazed.death.no-accept-reset", "A client that resets while it waits does no harm.",
            "document is silent; our choice", Profiles::kDocumented, "kinovazed.death.accept-reset"),

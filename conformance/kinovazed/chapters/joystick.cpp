@@ -536,6 +536,15 @@ constexpr Clause kJoystickClauses[] = {
          server.perform("SetJoystickMode:Rotation", Event::kJoystickModeSet);
          server.expect_beat(69);
        }),
+    variant("after-no-mode", in(kIdle, "NoMode between them does not count.",
+                                [](ServerBench& server) {
+                                  server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+                                  server.pause(700ms);
+                                  server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
+                                  server.perform("SetJoystickMode:Rotation",
+                                                 Event::kJoystickModeSet);
+                                  server.expect_beat(69);
+                                })),
 };
 
 }  // namespace

@@ -186,6 +186,12 @@ constexpr Clause kBusClauses[] = {
            expect_clock_time(node, 1010us,
                              [&node] { node.send_bytes("22 00 CD CC 4C 3E 00 00 10 C1"); });
          }),
+    variant("loading", from(kProgrammable, Hazard::kProgram,
+                            "Loading the stored controllers takes hardly longer than its bits.",
+                            [](NodeBench& node) {
+                              expect_clock_time(node, 200us,
+                                                [&node] { node.send(kDefaultControllers); });
+                            })),
 
     should("morap.bus.clock-before-read",
            "A node holds the clock for at most 5 ms before the first byte of an answer.",

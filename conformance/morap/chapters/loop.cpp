@@ -140,6 +140,12 @@ void integrates_references(NodeBench& node) {
   node.expect_levels_at_ticks({4, 8, 12, 16});
 }
 
+/// Half of the output before without its integral, and 8 levels; and four more each time.
+void integrates_beside_outputs(NodeBench& node) {
+  run_loop(node, blind_set(node, {0.005F}, {-0.5F}, 0.0025F), kFar);
+  node.expect_levels_at_ticks({12, 20, 26});
+}
+
 void integrates_nothing(NodeBench& node) {
   run_loop(node, blind_set(node, {0.5F}, {0.0F}, -0.25F), 0.75F);
   node.expect_levels_at_ticks({8, 8, 8});
@@ -403,6 +409,7 @@ constexpr Clause kLoopClauses[] = {
          "recording static-speed-locked", Profiles::kFirmware),
     loop("Nothing but an integrator.", on<integrates_references>),
     variant("slowly", slowly(on<integrates_references>)),
+    variant("beside-outputs", slowly(on<integrates_beside_outputs>)),
 
     must("morap.loop.integral-of-angle", "And takes off the measured value times its gain.",
          "firmware, feedback loop", Profiles::kFirmware),

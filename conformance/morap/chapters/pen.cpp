@@ -58,17 +58,24 @@ constexpr Clause kPenClauses[] = {
                  if (node.address() != address) node.expect_absent(address);
                }
              }),
-
-    must("morap.pen.acknowledges", "The pen acknowledges the bytes of a command.",
-         "reference, pen; recording pen-set-position"),
-    with_pen("2, and 7 with a byte.",
-             [](NodeBench& node) {
-               if (!node.write(kPen, {}).is_addressed) {
-                 return node.skip("needs a pen; none answers on this bus");
-               }
-               tell(node, "02");
-               tell(node, "07 00");
-             }),
+    variant("commands", with_pen("It acknowledges the bytes of 2, and of 7 with a byte.",
+                                 [](NodeBench& node) {
+                                   if (!node.write(kPen, {}).is_addressed) {
+                                     return node.skip("needs a pen; none answers on this bus");
+                                   }
+                                   tell(node, "02");
+                                   tell(node, "07 00");
+                                 })),
+    variant("hung", with_pen("It does so also when a surplus byte has hung it.",
+                             [](NodeBench& node) {
+                               if (!node.write(kPen, {}).is_addressed) {
+                                 return node.skip("needs a pen; none answers on this bus");
+                               }
+                               node.touch("power", 1);  // it shows whether there is a hand
+                               tell(node, "02 00");
+                               tell(node, "02");
+                               node.touch("power", 1);
+                             })),
 
     must("morap.pen.at-boot", "At power-on the pen is retracted, at 45 degrees.", "vector P1"),
     with_pen("It is looked at, also after a command and power.",

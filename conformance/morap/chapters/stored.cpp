@@ -26,13 +26,6 @@ void expect_stored(NodeBench& node) {
 }
 
 constexpr Clause kStoredClauses[] = {
-    must("morap.defaults.at-boot", "At power-on the stored controllers are in use.",
-         "document; firmware", Profiles::kFirmware),
-    variant("position", programming("The position controller is read, then loaded and read.",
-                                    on<expect_stored<kReadPositionSet>>, kSwitchedOn)),
-    variant("speed", programming("The speed controller is read, then loaded and read.",
-                                 on<expect_stored<kReadSpeedSet>>, kSwitchedOn)),
-
     must("morap.defaults.status", "Loading the stored controllers makes the programming status 1.",
          "vector 41", Profiles::kFirmware),
     programming("After a success.",
@@ -54,11 +47,15 @@ constexpr Clause kStoredClauses[] = {
          "document; vector 41", Profiles::kFirmware),
     programming("Programmed and loaded.",
                 [](NodeBench& node) { expect_back(node, kReadPositionSet, good()); }),
+    variant("at-boot", programming("It is in use at power-on.", on<expect_stored<kReadPositionSet>>,
+                                   kSwitchedOn)),
 
     must("morap.defaults.speed", "Identifier 33 brings the stored speed controller back.",
          "document; firmware", Profiles::kFirmware),
     programming("Programmed and loaded.",
                 [](NodeBench& node) { expect_back(node, kReadSpeedSet, kSpeedSet); }),
+    variant("at-boot", programming("It is in use at power-on.", on<expect_stored<kReadSpeedSet>>,
+                                   kSwitchedOn)),
 
     must("morap.defaults.while-enabled",
          "The stored controllers are loaded also into an enabled node.", "firmware, identifier 33",

@@ -190,6 +190,16 @@ constexpr Clause kCommandClauses[] = {
          "firmware, vector B5"),
     from(kEnabled, Hazard::kMove, "The speed of a jog is still shown after disable.",
          [](BoardBench& board) { expect_speed_kept(board, with_code(kDisable)); }),
+    variant("enabled-again",
+            from(kEnabled, Hazard::kMove, "It is still shown after disable and enable.",
+                 [](BoardBench& board) {
+                   board.act(a_jog());
+                   board.act(with_code(kDisable));
+                   board.act(with_code(kEnable));
+                   board.about("a jog of j5 at 500, disable, enable");
+                   board.expect(board.ask(with_code(kEnable)), "speed.j5", kSpeed);
+                   board.act(idle());
+                 })),
 
     must("parol6.command.disabled-jog", "A disabled board does not jog.", "firmware, vector B7"),
     from(kEnabled, Hazard::kMove, "No joint moves in a jog while disabled.",
@@ -342,8 +352,13 @@ constexpr Clause kCommandClauses[] = {
     must("parol6.command.unknown-keeps-speed",
          "A code without a meaning leaves the reported speeds as they were.",
          "firmware, vector B8"),
-    from(kEnabled, Hazard::kMove, "The speed of a jog is still shown after code 42.",
-         [](BoardBench& board) { expect_speed_kept(board, with_code(42)); }),
+    from(kEnabled, Hazard::kMove,
+         "The speed of a jog is still shown after codes with other speeds.",
+         [](BoardBench& board) {
+           for (const int code : {0, 42, 200}) {
+             expect_speed_kept(board, with_speeds(code, kSomeSpeeds));
+           }
+         }),
 
     must("parol6.command.unknown-still",
          "No code without a meaning moves anything, whatever speeds and positions come with it.",

@@ -188,8 +188,8 @@ constexpr Clause kFrameClauses[] = {
          "document, end bytes; firmware, vector R2"),
     look("Wrong end bytes cost one frame, not two.",
          [](BoardBench& board) {
-           constexpr std::array<std::pair<int, int>, 4> kWrongEnds{
-               {{1, 3}, {2, 2}, {0, 0}, {2, 1}}};
+           constexpr std::array<std::pair<int, int>, 6> kWrongEnds{
+               {{1, 3}, {2, 2}, {0, 0}, {2, 1}, {1, 255}, {255, 255}}};
            for (const auto& [first, second] : kWrongEnds) {
              auto frame = encode(idle());
              frame[kCommandFrameSize - 2] = static_cast<std::byte>(first);

@@ -62,6 +62,14 @@ void expect_law(BoardBench& board, const Speeds& ways, const Speeds& speeds) {
   go_back(board, rest);
 }
 
+/// Joints that are sent where they stand rest a hundredth of their commanded speeds beyond.
+void expect_balance(BoardBench& board, const Answer& rest, const Speeds& speeds) {
+  const auto answer = board.keep_asking(go_to(rest.position, speeds), kArrival);
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    board.expect(answer, position_field(j), rest.position[j].value + speeds[j] / 100);
+  }
+}
+
 void expect_far(BoardBench& board, const Speeds& most) {
   board.spoil();
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -169,13 +177,8 @@ constexpr Clause kGoToClauses[] = {
     from(kHomed, Hazard::kMove, "Six joints rest beside their targets, as their speeds say.",
          [](BoardBench& board) {
            const auto rest = board.ask(idle());
-           constexpr Speeds kSpeeds{200, -200, 500, -500, 1000, -1000};
-           const auto answer = board.keep_asking(go_to(rest.position, kSpeeds), kArrival);
-           for (std::size_t j = 0; j < kJointCount; ++j) {
-             board.about(
-                 fmt::format("a go-to at its target with a commanded speed of {}", kSpeeds[j]));
-             board.expect(answer, position_field(j), rest.position[j].value + kSpeeds[j] / 100);
-           }
+           board.about("a go-to at its target with commanded speeds");
+           expect_balance(board, rest, {200, -200, 500, -500, 1000, -1000});
            go_back(board, rest);
          }),
 
@@ -202,6 +205,15 @@ constexpr Clause kGoToClauses[] = {
            expect_arrival(board, beside(rest, kJ5, -60));
            expect_return(board, rest);
          }),
+    variant("speed", from(kHomed, Hazard::kMove, "Only the commanded speeds change.",
+                          [](BoardBench& board) {
+                            const auto rest = board.ask(idle());
+                            board.keep_asking(go_to(rest.position), 50ms);
+                            board.about("a go-to whose commanded speeds have changed");
+                            expect_balance(board, rest, {1000, -500, 200, -1000, 500, -200});
+                            expect_balance(board, rest, {-200, 1000, -500, 200, -1000, 500});
+                            go_back(board, rest);
+                          })),
 
     must("parol6.goto.no-overshoot",
          "A go-to without commanded speeds does not go beyond its target.",

@@ -54,6 +54,25 @@ Stretch after_one_switch(BoardBench& board) {
   return run(board, idle(), 200ms);
 }
 
+/// In a run of homing the command comes again when three joints are homed.
+void expect_goes_on_later(BoardBench& board) {
+  board.act(with_code(kHome));
+  board.about("homing, until three joints are homed");
+  const auto are_three = [](const Answer& answer) { return answer.homed == kFirstThreeHomed; };
+  const auto three = board.ask_until(idle(), are_three, 60s);
+  if (!three) return board.fail("homed = E3 within 60 s", "never");
+  board.act(with_code(kHome));
+  board.about("the home command, again");
+  const auto later = board.keep_asking(idle(), 300ms);
+  board.expect(later, "homed", kFirstThreeHomed);
+  for (const auto joint : {kJ1, kJ2, kJ3}) {
+    board.expect_same(later, position_field(joint), *three);
+  }
+  if (!board.ask_until(idle(), [](const Answer& answer) { return is_homed(answer); }, 90s)) {
+    board.fail("all joints homed", "not in 90 s");
+  }
+}
+
 constexpr std::uint8_t kFourHomed = 0xF3;
 
 /// Holds the home command until the run behind the first one has begun, or for 90 s.
@@ -148,6 +167,9 @@ constexpr Clause kHomeClauses[] = {
            expect_reported(board, board.ask(with_code(kHome)), seek_speeds());
            board.act(with_code(kEnable));
          }),
+    variant("later",
+            full(from(kHomed, Hazard::kHome, "J1 to J3 stay homed when it comes after them.",
+                      [](BoardBench& board) { expect_goes_on_later(board); }))),
 
     must("parol6.home.paused",
          "A code without a meaning pauses homing, and the next idle frame resumes it.",

@@ -79,6 +79,15 @@ constexpr Clause kSetPointClauses[] = {
           expect_moves(board, set_point);
         },
         kFull),
+    variant("high-byte", grip(
+                             "One that differs in its high byte starts an idle drive.",
+                             [](BoardBench& board) {
+                               auto set_point = idle_on_the_way(board);
+                               set_point.position += 256;
+                               board.about("a position 256 larger after clear-error");
+                               expect_moves(board, set_point);
+                             },
+                             kFull)),
 
     must("parol6.gripper.change-of-speed", "A changed gripper speed sends the set-points.",
          "firmware"),
@@ -91,6 +100,15 @@ constexpr Clause kSetPointClauses[] = {
           expect_moves(board, set_point);
         },
         kFull),
+    variant("high-byte", grip(
+                             "One that differs in its high byte starts an idle drive.",
+                             [](BoardBench& board) {
+                               auto set_point = idle_on_the_way(board);
+                               set_point.speed += 256;
+                               board.about("a speed 256 larger after clear-error");
+                               expect_moves(board, set_point);
+                             },
+                             kFull)),
 
     must("parol6.gripper.change-of-current", "A changed gripper current sends the set-points.",
          "firmware"),
