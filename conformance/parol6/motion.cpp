@@ -43,15 +43,6 @@ StepBounds possible_steps(const BoardBench& board, const Stretch& stretch, int o
 std::string speed_field(std::size_t joint) { return fmt::format("speed.j{}", joint + 1); }
 std::string position_field(std::size_t joint) { return fmt::format("position.j{}", joint + 1); }
 
-void expect_interval(BoardBench& board, const Answer& before, const Answer& after) {
-  const auto least = ticks_in(after.asked - before.received) * (1 - kClockError) - 1;
-  const auto most = ticks_in(after.received - before.asked) * (1 + kClockError) + 1;
-  const auto above_least = static_cast<std::uint16_t>(after.timing - static_cast<int>(least));
-  board.expect_in_time({static_cast<double>(above_least), 0, most - least + 1, "ticks"},
-                       fmt::format("timing of {:.0f} to {:.0f} ticks, modulo 65536", least, most),
-                       fmt::format("{} ticks", after.timing));
-}
-
 std::int32_t steps(const Stretch& stretch, std::size_t joint) noexcept {
   return stretch.after.position[joint].value - stretch.before.position[joint].value;
 }

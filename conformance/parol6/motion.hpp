@@ -21,9 +21,6 @@ struct Stretch {
   Answer after;
 };
 
-/// The board took each frame between when it was handed over and when its answer had come.
-void expect_interval(BoardBench& board, const Answer& before, const Answer& after);
-
 /// Steps from the first to the last answer.
 [[nodiscard]] std::int32_t steps(const Stretch& stretch, std::size_t joint) noexcept;
 

@@ -54,10 +54,10 @@ Outcome<std::unique_ptr<Bench>> bench_within_reach(
   auto bench = std::visit(
       [&](const auto& kind) { return open(kind, kPlaces.at(device.port.index())); }, device.port);
   if (!bench) return bench;
-  (*bench)->set_hand({.has = std::move(has_input),
-                      .set = [](std::string_view input, std::int64_t value) {
-                        return reached.port->touch(input, value);
-                      }});
+  (*bench)->set_hand(
+      {.has = std::move(has_input), .set = [](std::string_view input, std::int64_t value) {
+         return reached.port->touch(input, value);
+       }});
   return bench;
 }
 

@@ -32,6 +32,16 @@ constexpr Duration kDropped = 100ms;
 
 constexpr GripperSetPoint kElsewhere{.speed = 77, .id = 5};
 
+/// The board took each frame between when it was handed over and when its answer had come.
+void expect_interval(BoardBench& board, const Answer& before, const Answer& after) {
+  const auto least = ticks_in(after.asked - before.received) * (1 - kClockError) - 1;
+  const auto most = ticks_in(after.received - before.asked) * (1 + kClockError) + 1;
+  const auto above_least = static_cast<std::uint16_t>(after.timing - static_cast<int>(least));
+  board.expect_in_time({static_cast<double>(above_least), 0, most - least + 1, "ticks"},
+                       fmt::format("timing of {:.0f} to {:.0f} ticks, modulo 65536", least, most),
+                       fmt::format("{} ticks", after.timing));
+}
+
 void expect_interval_after(BoardBench& board, Duration gap) {
   const auto before = board.ask(idle());
   board.pause(gap);
