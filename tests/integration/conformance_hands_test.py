@@ -93,9 +93,9 @@ def check_restart(armjig, path):
         case = "kinovazed.death.accept-reset"
         target = f"tcp:{address}:{port}"
         alone, _ = folder.verdicts("kinovazed", target, case)
-        assert alone == {case: "skipped"}, alone
+        assert alone[case] == "skipped" and set(alone.values()) == {"skipped"}, alone
         verdicts, out = folder.verdicts("kinovazed", target, case, "--restart", restart)
-        assert verdicts == {case: "pass"}, out
+        assert verdicts.keys() == alone.keys() and set(verdicts.values()) == {"pass"}, out
         start = "kinovazed.state.start"
         verdicts, out = folder.verdicts("kinovazed", target, start, "--restart", restart)
         assert verdicts[start] == "pass", out
