@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 
-from hosted_devices import DEVICES, come_first, hosted, load
+from hosted_devices import DEVICES, hosted, load
 
 ARMJIG = sys.argv[1]
 RUNS = int(sys.argv[2]) if len(sys.argv) > 2 else 60
@@ -100,7 +100,6 @@ def check(device):
 def main():
     if unknown := [device for device in CHOSEN if device not in DEVICES]:
         sys.exit(f"{', '.join(unknown)}: no such device; {', '.join(DEVICES)}")
-    come_first()
     begun = time.time()
     troubles = [trouble for device in CHOSEN for trouble in check(device)]
     print(f"{time.time() - begun:.0f} s; " + ("; ".join(troubles) or "all well"))
