@@ -62,6 +62,14 @@ void expect_closed_by(BoardBench& board, const CommandFrame& frame, Duration tim
                     fmt::format("it went from {} to {}", before, after));
 }
 
+/// Set-points that are changed in that way start a drive that was left idle.
+void expect_starts(BoardBench& board, std::string_view what, void (*change)(GripperSetPoint&)) {
+  auto set_point = idle_on_the_way(board);
+  change(set_point);
+  board.about(std::string{what});
+  expect_moves(board, set_point);
+}
+
 constexpr Clause kSetPointClauses[] = {
     must("parol6.gripper.idle-until-changed",
          "After calibration or clear-error the gripper stands until a set-point changes.",
@@ -73,19 +81,15 @@ constexpr Clause kSetPointClauses[] = {
     grip(
         "Another position starts an idle drive.",
         [](BoardBench& board) {
-          auto set_point = idle_on_the_way(board);
-          set_point.position = 245;
-          board.about("another position after clear-error");
-          expect_moves(board, set_point);
+          expect_starts(board, "another position after clear-error",
+                        [](GripperSetPoint& one) { one.position = 245; });
         },
         kFull),
     variant("high-byte", grip(
                              "One that differs in its high byte starts an idle drive.",
                              [](BoardBench& board) {
-                               auto set_point = idle_on_the_way(board);
-                               set_point.position += 256;
-                               board.about("a position 256 larger after clear-error");
-                               expect_moves(board, set_point);
+                               expect_starts(board, "a position 256 larger after clear-error",
+                                             [](GripperSetPoint& one) { one.position += 256; });
                              },
                              kFull)),
 
@@ -94,19 +98,15 @@ constexpr Clause kSetPointClauses[] = {
     grip(
         "Another speed starts an idle drive.",
         [](BoardBench& board) {
-          auto set_point = idle_on_the_way(board);
-          set_point.speed = 21;
-          board.about("another speed after clear-error");
-          expect_moves(board, set_point);
+          expect_starts(board, "another speed after clear-error",
+                        [](GripperSetPoint& one) { one.speed = 21; });
         },
         kFull),
     variant("high-byte", grip(
                              "One that differs in its high byte starts an idle drive.",
                              [](BoardBench& board) {
-                               auto set_point = idle_on_the_way(board);
-                               set_point.speed += 256;
-                               board.about("a speed 256 larger after clear-error");
-                               expect_moves(board, set_point);
+                               expect_starts(board, "a speed 256 larger after clear-error",
+                                             [](GripperSetPoint& one) { one.speed += 256; });
                              },
                              kFull)),
 
@@ -115,10 +115,8 @@ constexpr Clause kSetPointClauses[] = {
     grip(
         "Another current starts an idle drive.",
         [](BoardBench& board) {
-          auto set_point = idle_on_the_way(board);
-          set_point.current = Milliamperes{401};
-          board.about("another current after clear-error");
-          expect_moves(board, set_point);
+          expect_starts(board, "another current after clear-error",
+                        [](GripperSetPoint& one) { one.current = Milliamperes{401}; });
         },
         kFull),
 
@@ -127,10 +125,9 @@ constexpr Clause kSetPointClauses[] = {
     grip(
         "Another command byte starts an idle drive.",
         [](BoardBench& board) {
-          auto set_point = idle_on_the_way(board);
-          set_point.command |= gripper_command::kReleaseDirection;
-          board.about("another release direction after clear-error");
-          expect_moves(board, set_point);
+          expect_starts(
+              board, "another release direction after clear-error",
+              [](GripperSetPoint& one) { one.command |= gripper_command::kReleaseDirection; });
         },
         kFull),
 
