@@ -143,21 +143,22 @@ class Campaign {
     return {};
   }
 
-  [[nodiscard]] Outcome<void> start_again() {
+  [[nodiscard]] Outcome<void> start_again() { return start_again({}); }
+  [[nodiscard]] Outcome<void> start_again(const Script& questions) {
     history_.clear();
     if (auto begun = stage_.reset(); !begun) return begun;
-    return stage_.can_reset() ? Outcome<void>{} : meet();
+    return stage_.can_reset() ? Outcome<void>{} : meet(questions);
   }
 
-  /// A device that nobody can start again is where it is. Of what it shows then and a new one does
-  /// not, nothing can be said.
-  [[nodiscard]] Outcome<void> meet() {
+  /// A device that nobody can start again is where it is. Of what it shows then, asked that and the
+  /// harmless question, and a new one does not, nothing can be said.
+  [[nodiscard]] Outcome<void> meet(const Script& questions) {
     constexpr int kMostParts = 50;
     constexpr int kMostUnanswered = 3;
     int unanswered = 0;
     bool are_renewed = false;
     for (int left = kMostParts; left > 0; --left) {
-      const auto seen = see({});
+      const auto seen = see(questions);
       if (!seen && is_refusal(seen.error()) && left > 1) continue;
       if (!seen) return tl::unexpected{seen.error()};
       if (seen->heard.target.end) return tl::unexpected{*seen->heard.target.end};
@@ -274,12 +275,12 @@ class Campaign {
     return problem.code == ErrorCode::kForbidden;
   }
 
-  /// A case that the guard ended tells nothing.
+  /// A case that the guard ended tells nothing, and models do not know where it left the target.
   [[nodiscard]] Outcome<void> give_up(const Problem& problem) {
     if (!is_refusal(problem)) return tl::unexpected{problem};
     ++state_.refused;
     state_.last_refusal = problem.hint;
-    return start_again();
+    return start_again(survey_ ? survey_->questions() : Script{});
   }
 
   using IsIt = std::function<bool(const Symptom& seen)>;

@@ -26,6 +26,11 @@ void rest(StreamPort& port, Duration time) {
 void rest(SessionSource& server, Duration time) { server.pause(time); }
 void rest(BusPort& port, Duration time) { port.wait_until(port.now() + time); }
 
+/// To who watches over a target, without waiting and without taking what came from it.
+void show_life(StreamPort& port) { (void)port.read({}, port.now()); }
+void show_life(SessionSource& server) { server.pause(1us); }
+void show_life(BusPort& port) { port.wait_until(port.now()); }
+
 /// Whether it is there: a server is when it takes a client, which leaves as a system tells it.
 bool greet(SessionSource& server) {
   constexpr auto kPatience = 100ms;
@@ -216,6 +221,7 @@ BothHeard StageOn<Port>::beside(Models& models, const Script& script, Outcome<Pl
   const auto known = played.value_or(Played{});
   BothHeard both{heard(std::move(played)), {}, lateness_of(script, known.passed)};
   for (std::size_t i = 0; i < models.size(); ++i) {
+    if (target_ && target_->is_guarded()) show_life(target_->port());
     const auto guessed = setup_.is_emulated ? script : guess_of(i, script, known);
     both.models.push_back(heard(in_order(play_host(models[i].port(), guessed, setup_.how))));
   }

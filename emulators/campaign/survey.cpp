@@ -40,6 +40,13 @@ void Survey::put_last(const std::function<bool(const Script& script)>& is_one) {
   std::ranges::stable_partition(cases_, [&](const Case& one) { return !is_one(one.script()); });
 }
 
+Script Survey::questions() const {
+  Script questions;
+  for (const auto address : material_.addresses) repertoire_.look_at_all(questions, address);
+  if (material_.permit) material_.permit(questions);
+  return questions;
+}
+
 void Survey::plan() {
   const auto of_all = [this](std::size_t state, std::initializer_list<Exercise> exercises) {
     for (const auto exercise : exercises) {

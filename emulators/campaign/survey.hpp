@@ -28,6 +28,9 @@ class Survey {
 
   [[nodiscard]] std::size_t size() const noexcept { return cases_.size(); }
   [[nodiscard]] Script at(std::size_t number) const { return cases_[number].script(); }
+  /// All that can be asked of all who are there, and does nothing else; empty: there is no more
+  /// than the harmless question.
+  [[nodiscard]] Script questions() const;
   /// Those come after all others.
   void put_last(const std::function<bool(const Script& script)>& is_one);
 

@@ -157,6 +157,54 @@ class SupervisedBoard final : public StreamAround {
   }
 };
 
+/// Who was read, in order, but for repetitions: the target, or a model by its number.
+constexpr int kTarget = -1;
+std::vector<int> who_was_read;  // NOLINT(*-global-*): whoever opens ports has no captures
+
+/// An emulated board that notes when it is read.
+class NotingBoard final : public StreamAround {
+ public:
+  NotingBoard(std::unique_ptr<StreamPort> board, int who)
+      : StreamAround{std::move(board)}, who_{who} {}
+  Result<void> write(Bytes bytes) override { return inner().write(bytes); }
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
+    if (who_was_read.empty() || who_was_read.back() != who_) who_was_read.push_back(who_);
+    return inner().read(into, deadline);
+  }
+
+ private:
+  int who_;
+};
+
+Outcome<std::unique_ptr<StreamPort>> noting_board(int who) {
+  auto board = test::wiring<cli::OnStream>("parol6").open_emulated(*parse_target("emulated:"));
+  return std::make_unique<NotingBoard>(*std::move(board), who);
+}
+
+/// Many models of a long case take longer than a supervisor waits, and the guard looks at bounds
+/// only when it is called.
+TEST(Stage, LetsTheGuardLookAtTheTargetBetweenTheModels) {
+  StageSetup<StreamPort> setup;
+  setup.make_target = [] {
+    auto wiring = test::wiring<cli::OnStream>("parol6");
+    wiring.open_real = [](const Target& /*place*/, const SerialLine& /*line*/) {
+      return noting_board(kTarget);
+    };
+    return Rig<StreamPort>::open(wiring, rig_at("pty:/dev/null"));
+  };
+  int models = 0;
+  setup.make_model = [&models] {
+    return Outcome<Rig<StreamPort>>{Rig<StreamPort>{*noting_board(models++)}};
+  };
+  StageOn<StreamPort> stage{std::move(setup)};
+  ASSERT_TRUE(stage.reset());
+  who_was_read.clear();
+  const KeptRecord sent{.kind = LinkKind::kStream, .bytes = {std::byte{}}};
+  ASSERT_TRUE(stage.play({sent}));
+  EXPECT_GE(std::ranges::count(who_was_read, kTarget), models);
+  EXPECT_GT(models, 1);
+}
+
 Rig<StreamPort> supervised_board() {
   auto wiring = test::wiring<cli::OnStream>("parol6");
   wiring.open_real = [](const Target& /*place*/,
