@@ -54,6 +54,22 @@ void set_out(ServerBench& server) {
   server.pause(300ms);
 }
 
+/// The way to Home tells where the arm is.
+void expect_ready_after_steering(ServerBench& server) {
+  const auto usual = time_of(server, "Home");
+  initialize_afresh(server);
+  server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+  server.accept("MoveJoystick:0:0:400");
+  server.pause(3s);
+  server.accept("MoveJoystick:0:0:0");
+  server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
+  server.perform("Initialize", Event::kInitialized);
+  const auto tolerance = 300ms + server.noise();
+  const auto after = time_of(server, "Home");
+  server.about("the way to Home after steering and Initialize");
+  expect_time(server, after, usual - tolerance, usual + tolerance);
+}
+
 constexpr Clause kInterruptClauses[] = {
     must("kinovazed.event.table",
          "The arm's own ends act where they are awaited: folding ends in retracted, unfolding "
@@ -229,6 +245,8 @@ constexpr Clause kInterruptClauses[] = {
          server.expect(Event::kInitialized, ServerBench::kMotionTime);
          server.expect_beat(21);
        }),
+    variant("steered", in(kIdle, "After steering the arm is at its ready pose then.",
+                          on<expect_ready_after_steering>)),
 
     must("kinovazed.initialize.recurring",
          "Initialize in idle is confirmed at once, wherever the arm is.",

@@ -89,19 +89,47 @@ Duration way_back(ServerBench& server, std::string_view mode, std::initializer_l
   return time_of(server, "Home");
 }
 
-/// A push of Axis4to6 leads as far away whether another mode was set before or not.
-void expect_own_axes(ServerBench& server) {
-  constexpr Push kThird{2, 400, kPush};
-  const auto of_other = way_back(server, kXyz, {kThird});
-  const auto own = way_back(server, kAxis4to6, {kThird});
+/// The way back from a push of Axis4to6, with the hand led to Home from the same place each time.
+Duration way_back_after(ServerBench& server, std::string_view mode_before) {
+  initialize_afresh(server);
   (void)time_of(server, "Home");
-  server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
-  push_in(server, kAxis4to6, {kThird});
-  const auto behind = time_of(server, "Home");
-  const auto apart = std::max(own, of_other) - std::min(own, of_other);
-  if (apart < kAway) return server.leave_open("this arm is as fast back from both");
-  server.about("how much farther a push of Axis4to6 leads after XYZ");
-  expect_time(server, behind - own, -apart / 2, apart / 2);
+  server.perform("SetJoystickMode:" + std::string{mode_before}, Event::kJoystickModeSet);
+  push_in(server, kAxis4to6, {{2, 400, kPush}});
+  return time_of(server, "Home");
+}
+
+/// A push of Axis4to6 leads as far away whatever mode was set before.
+void expect_own_axes(ServerBench& server) {
+  const auto own = way_back_after(server, "NoMode");
+  const auto tolerance = kAway + server.noise();
+  for (const auto* const before : {kXyz, kAxis1to3}) {
+    const auto back = way_back_after(server, before);
+    server.about(fmt::format("the way back from a push of Axis4to6, set after {}", before));
+    expect_time(server, back, own - tolerance, own + tolerance);
+  }
+}
+
+/// How long the server takes for many moves that come together.
+Duration time_of_moves(ServerBench& server, std::string_view move) {
+  constexpr int kMany = 40;
+  std::string moves;
+  for (int i = 0; i < kMany; ++i) moves += std::string{move} + "\r\n";
+  const auto said = server.now();
+  server.send(moves);
+  auto last = said;
+  for (int i = 0; i < kMany && !server.is_over(); ++i) {
+    last = server.expect(Event::kAccepted).time;
+  }
+  return last - said;
+}
+
+/// Three zeroes are a deflection like others, and no stop, for which a server waits.
+void expect_zeroes_as_fast(ServerBench& server) {
+  constexpr Duration kShortestStops = 600ms;
+  const auto usual = time_of_moves(server, "MoveJoystick:0:0:1");
+  const auto zeroes = time_of_moves(server, kStop);
+  server.about("how much longer forty moves by zeroes take than forty by 1");
+  expect_time(server, std::max(zeroes - usual, Duration{}), {}, kShortestStops + server.noise());
 }
 
 /// Each axis leads away, and only its own opposite leads back.
@@ -326,6 +354,8 @@ constexpr Clause kJoystickClauses[] = {
          for (int i = 0; i < 20; ++i) server.expect(Event::kAccepted);
          server.expect_silence();
        }),
+    variant("zeroes", in(kSteering, "Forty zeroes take no longer than forty of 1.",
+                         on<expect_zeroes_as_fast>)),
 
     must("kinovazed.joystick.holds", "A deflection moves the arm until the next one.",
          "server; reference 8.2"),
@@ -361,7 +391,8 @@ constexpr Clause kJoystickClauses[] = {
     must("kinovazed.joystick.own-axes",
          "A mode has its own axes also right after another one, with no NoMode between.",
          "server; reference 8.2"),
-    in(kIdle, "The third of Axis4to6 after XYZ leads as far as without.", on<expect_own_axes>),
+    in(kIdle, "The third of Axis4to6 after XYZ and Axis1to3 leads as far as without.",
+       on<expect_own_axes>),
 
     must("kinovazed.joystick.signs",
          "In mode XYZ positive numbers lead the hand up, to the right and to the front, which is "

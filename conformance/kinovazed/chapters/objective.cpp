@@ -109,11 +109,13 @@ constexpr Course kOpenDoor{"OpenDoor", kOpenDoorOffsets, true};
 constexpr Course kPullDoor{"PullDoor", kPullDoorOffsets, true};
 
 // Tours in which no objective has a part in more than half of the legs: it begins one and ends one.
+// Eight legs of the one with doors have no part in any that is relative.
 constexpr std::array kFixedTour{kHome,     kSuckDoor, kHandle, kAntenna, kHome,    kHandle,
                                 kSuckDoor, kAntenna,  kHandle, kHome,    kAntenna, kSuckDoor};
 constexpr std::array kDoorTour{kHandle,   kOpenDoor, kHome,     kHandle, kPullDoor,
                                kSuckDoor, kOpenDoor, kAntenna,  kHandle, kHome,
-                               kPullDoor, kHandle,   kSuckDoor, kHome,   kOpenDoor};
+                               kPullDoor, kHandle,   kSuckDoor, kHome,   kAntenna,
+                               kSuckDoor, kHandle,   kAntenna,  kHome,   kOpenDoor};
 constexpr std::array kBottleTour{kHome, kFindBottle,  kSuckDoor, kPlaceBottle, kHandle, kFindBottle,
                                  kHome, kPlaceBottle, kSuckDoor, kHandle,      kHome};
 

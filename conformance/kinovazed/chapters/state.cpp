@@ -115,6 +115,23 @@ void mode(ServerBench& server) {
   on_the_way(server, "SetJoystickMode:Rotation", 5, Event::kJoystickModeSet);
 }
 
+/// How long a command takes until its event.
+Duration time_until(ServerBench& server, std::string_view command, Event event) {
+  const auto said = server.now();
+  return server.perform(command, event).time - said;
+}
+
+/// An arm that is not folded is unfolded sooner.
+void expect_folded_from_afar(ServerBench& server) {
+  server.perform("Retract", Event::kRetracted);
+  const auto usual = time_until(server, "Unfold", Event::kUnfolded);
+  server.perform(kFarObjective, Event::kObjectiveDone);
+  server.perform("Retract", Event::kRetracted);
+  const auto after = time_until(server, "Unfold", Event::kUnfolded);
+  server.about("Unfold after Retract from where an objective ends");
+  expect_time(server, after, usual - 300ms - server.noise(), ServerBench::kMotionTime);
+}
+
 constexpr Clause kStateClauses[] = {
     must("kinovazed.state.start", "A server that was just started is in emergencyStopped.",
          "server; reference 6.1"),
@@ -196,6 +213,9 @@ constexpr Clause kStateClauses[] = {
          "server, state-command-matrix"),
     in(kIdle, "Beat 5, then Retracted.",
        [](ServerBench& server) { on_the_way(server, "Retract", 5, Event::kRetracted); }),
+    variant("from-afar",
+            in(kIdle, "After an objective the arm is as folded as from the ready pose.",
+               on<expect_folded_from_afar>)),
 
     must("kinovazed.state.idle.freeze", "In idle Freeze leads to frozen.",
          "server, state-command-matrix"),

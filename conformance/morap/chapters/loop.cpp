@@ -182,6 +182,18 @@ void begins_anew_in_another_mode(NodeBench& node) {
   node.expect_levels_at_ticks({4, 8});
 }
 
+/// What a limit holds back is held back of the same loop only.
+void begins_anew_behind_a_limit(NodeBench& node) {
+  constexpr float kTooFar = 1000.0F;
+  run_loop(node, blind_set(node, {0.01F}, {0.0F}, 0.0025F), kTooFar);
+  node.expect_levels_at_ticks({node.motor().standstill_levels});
+  node.send(kVoltage, 0.0F);
+  node.tick(kIdleRateHz);
+  node.send(kPosition, kFar);
+  node.tick(node.loop_rate());
+  node.expect_levels_at_ticks({20, 24});
+}
+
 void goes_on_with_another_reference(NodeBench& node) {
   run_integrator(node);
   node.send(kPosition, kFar / 2);
@@ -507,6 +519,9 @@ constexpr Clause kLoopClauses[] = {
          "recording static-mode-switch-locked", Profiles::kFirmware),
     loop("An integrator, with a voltage between.", on<begins_anew_in_another_mode>),
     variant("slowly", slowly(on<begins_anew_in_another_mode>)),
+
+    variant("limited", loop("One that was limited.", on<begins_anew_behind_a_limit>)),
+    variant("slowly.limited", slowly(on<begins_anew_behind_a_limit>)),
 
     must("morap.loop.new-reference-goes-on", "Another reference in the same mode does not.",
          "recording static-position-locked", Profiles::kFirmware),

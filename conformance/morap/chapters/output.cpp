@@ -499,6 +499,12 @@ constexpr Clause kOutputClauses[] = {
             expect_voltage_at_tick(node);
           }),
     variant("slowly", slowly(on<comes_back_to_idle<kVoltage>>)),
+    variant("disabled", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              node.send(kDisable);
+              node.tick(kIdleRateHz);
+              expect_near_ticks(node);
+            })),
 
     must("morap.tick.back-to-idle-any",
          "The idle rate comes back with a direct voltage or a torque, too.", "firmware, tick",

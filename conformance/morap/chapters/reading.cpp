@@ -83,6 +83,17 @@ constexpr Clause kReadingClauses[] = {
                              node.send(kCalibrationUnknown);
                              node.expect_read_on("03");
                            })),
+    variant("other-reference", from(kUncalibrated, Hazard::kState,
+                                    "The position reference is chosen, then others are set.",
+                                    [](NodeBench& node) {
+                                      node.send(kPosition, 0.5F);
+                                      node.send(kReadPositionReference);
+                                      node.send(kSpeed, 0.25F);
+                                      node.expect_read_on("00 00 00 3F");
+                                      node.send(kPosition, 0.75F);
+                                      node.send(kVoltage, 0.0F);
+                                      node.expect_read_on("00 00 40 3F");
+                                    })),
     variant("angle",
             from(kFresh, Hazard::kState, "One choice, then commands and turns of the shaft.",
                  [](NodeBench& node) {

@@ -191,6 +191,17 @@ constexpr Clause kTuneClauses[] = {
                   node.expect_same(node.read(kReadSpeedSet, 31), speed);
                 }),
 
+    variant("beside", slowly([](NodeBench& node) {
+              run_slow_loop(node);
+              node.send(proportional(kIdleRateHz, 1.0F, ControllerKind::kSpeed));
+              const auto before = node.read(kReadSpeedSet, 3);
+              node.send_bytes("22 00 00 00 30 41 00 00 10 C1");
+              node.send(kDisable);
+              node.tick(kIdleRateHz);
+              const auto after = node.read(kReadSpeedSet, 3);
+              node.expect_true(after != before, "the set that came before it in use", "not in use");
+            })),
+
     must("morap.tune.short", "A tuning message of nine bytes does nothing.", "vector 53"),
     programming(
         "One byte is missing.",
