@@ -225,13 +225,14 @@ CampaignOptions campaign_options(const FuzzRun& run, const CampaignState& state,
       .known = run.known,
       .most_shrinking = kShrinkingEmulated,
       .stops_at_first = run.options.stops_at_first,
+      .when_survey = WhenSurvey::kInTurn,
       .must_stop = std::move(must_stop)};
   if (is_live) {
     options.cases_between_resets = kCasesBetweenResetsLive;
     options.confirmations = 3;
     options.doubts = 3;
     options.most_shrinking = kShrinkingLive;
-    options.begins_with_survey = true;
+    options.when_survey = WhenSurvey::kFirst;
     options.judging.horizon += options.judging.rules.time_tolerance;
     options.judging.told_interval = run.device.fuzz.told_interval;
     options.excuses.add({}, "connection", "time");  // of whoever carries the end of it

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -89,7 +90,7 @@ class Campaign {
         author_{material},
         excuses_{options.excuses},
         judging_astray_{judging_astray(material, options.judging)} {
-    if (options.begins_with_survey) survey_.emplace(material, options.seed);
+    if (options.when_survey != WhenSurvey::kNever) survey_.emplace(material, options.seed);
     if (survey_ && can_go_astray()) {
       survey_->put_last([this](const Script& script) { return goes_astray(script); });
     }
@@ -234,12 +235,20 @@ class Campaign {
     return messages_of(seen.heard.target.said, material_.make_dissector);
   }
 
-  /// Those of the survey are shared among all shares, too.
+  /// Those of the survey are shared among all shares, too. None: the case comes by chance.
+  [[nodiscard]] std::optional<std::size_t> place_in_survey(std::uint64_t number) const {
+    const bool is_in_turn = options_.when_survey == WhenSurvey::kInTurn;
+    if (!survey_ || (is_in_turn && number % 2 == 0)) return std::nullopt;
+    const auto turn = is_in_turn ? number / 2 : number;
+    const auto place = turn * options_.share.count + options_.share.index - 1;
+    if (place >= survey_->size()) return std::nullopt;
+    return place;
+  }
+
   [[nodiscard]] Script script_of(std::uint64_t number) const {
-    const auto place = number * options_.share.count + options_.share.index - 1;
-    auto script = survey_ && place < survey_->size()
-                      ? survey_->at(place)
-                      : author_.draw(seed_of(options_, number), state_.worthy);
+    const auto place = place_in_survey(number);
+    auto script =
+        place ? survey_->at(*place) : author_.draw(seed_of(options_, number), state_.worthy);
     if (material_.permit_case) material_.permit_case(script);
     return script;
   }

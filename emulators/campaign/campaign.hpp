@@ -21,6 +21,13 @@ struct Share {
   std::uint32_t count = 1;
 };
 
+/// When cases come from a survey of all that is known, and not by chance.
+enum class WhenSurvey : std::uint8_t {
+  kNever,
+  kInTurn,  ///< every other one: each finds soon what the other finds late
+  kFirst,   ///< where time is dear
+};
+
 struct CampaignOptions {
   std::uint64_t seed = 1;
   Share share{};
@@ -39,7 +46,7 @@ struct CampaignOptions {
   std::size_t most_attempts = 20'000;  ///< at shrinking one finding
   Duration most_shrinking{};           ///< time for one finding, by the wall clock
   bool stops_at_first = false;         ///< finding that is news
-  bool begins_with_survey = false;     ///< chance comes after it, as time is dear
+  WhenSurvey when_survey{};
   std::function<bool()> must_stop = [] { return false; };
 };
 

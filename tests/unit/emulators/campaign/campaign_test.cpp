@@ -9,6 +9,8 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/device.hpp"
 #include "cli/devices/devices.hpp"
@@ -95,6 +97,44 @@ TEST(Campaign, PlaysTheSameCasesForTheSameSeed) {
   ASSERT_EQ(other.findings.size(), 1U);
   EXPECT_EQ(one.findings.front().script, other.findings.front().script);
   EXPECT_EQ(one.shown.answers(), other.shown.answers());
+}
+
+/// Keeps what is played.
+class KeepingStage final : public Stage {
+ public:
+  explicit KeepingStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
+  Outcome<void> reset() override { return stage_->reset(); }
+  [[nodiscard]] bool can_reset() const override { return true; }
+  Outcome<void> renew_models() override { return stage_->renew_models(); }
+  Outcome<BothHeard> play(const Script& script) override {
+    played.push_back(script);
+    return stage_->play(script);
+  }
+
+  std::vector<Script> played;
+
+ private:
+  std::unique_ptr<Stage> stage_;
+};
+
+std::vector<Script> played_with(WhenSurvey when, std::uint64_t cases) {
+  const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
+  const auto material = cli::material_of(device, emulated(""), emulated(""), 1s).value();
+  KeepingStage stage{cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms)};
+  CampaignState state;
+  const CampaignOptions options{
+      .most_cases = cases, .judging = {device.make_dissector, {}, 20ms}, .when_survey = when};
+  EXPECT_TRUE(run_campaign(stage, material, options, state, {}));
+  return stage.played;
+}
+
+TEST(Campaign, TakesCasesOfTheSurveyInTurnWithThoseOfChance) {
+  const auto surveyed = played_with(WhenSurvey::kFirst, 3);
+  const auto by_chance = played_with(WhenSurvey::kNever, 1);
+  const auto in_turn = played_with(WhenSurvey::kInTurn, 6);
+  ASSERT_EQ(in_turn.size(), 6U);
+  EXPECT_EQ(in_turn[0], by_chance[0]);
+  for (std::size_t i = 0; i < surveyed.size(); ++i) EXPECT_EQ(in_turn[2 * i + 1], surveyed[i]);
 }
 
 TEST(Campaign, TellsWhatIsKnown) {
@@ -463,7 +503,7 @@ TEST(Campaign, PlaysWhatGoesThroughStatesToADeviceThatIsAsNew) {
   const CampaignOptions options{.most_cases = 40,
                                 .judging = {device.make_dissector, material.rules, 220ms},
                                 .cases_between_resets = 1000,
-                                .begins_with_survey = true};
+                                .when_survey = WhenSurvey::kFirst};
   ASSERT_TRUE(run_campaign(stage, material, options, state, {}));
   EXPECT_GT(std::ranges::max(stage.played).first, 20s);
   for (std::size_t i = 1; i < stage.played.size(); ++i) {
