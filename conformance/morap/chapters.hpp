@@ -15,6 +15,7 @@ namespace armjig::morap::conformance {
 [[nodiscard]] Chapter stored_chapter();
 [[nodiscard]] Chapter tune_chapter();
 [[nodiscard]] Chapter loop_chapter();
+[[nodiscard]] Chapter loop_mode_chapter();
 [[nodiscard]] Chapter motion_chapter();
 [[nodiscard]] Chapter documented_chapter();
 [[nodiscard]] Chapter pen_chapter();

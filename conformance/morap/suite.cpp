@@ -54,6 +54,7 @@ Suite suite() noexcept {
       stored_chapter(),
       tune_chapter(),
       loop_chapter(),
+      loop_mode_chapter(),
       motion_chapter(),
       documented_chapter(),
       pen_chapter(),

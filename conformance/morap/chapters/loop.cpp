@@ -1,22 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/morap/cases.hpp"
+#include "conformance/morap/loop_cases.hpp"
 
 namespace armjig::morap::conformance {
 namespace {
-
-constexpr std::uint16_t kRate = kIdleRateHz;
-
-ControllerSet position_set(std::initializer_list<float> d, std::initializer_list<float> c,
-                           std::initializer_list<float> f, float integral = 0.0F,
-                           std::uint16_t rate_hz = kRate) {
-  return {ControllerKind::kPosition, rate_hz, filter(d), filter(c), filter(f), integral};
-}
-
-/// One that minds nothing but its reference, so that it does not matter where the shaft is.
-ControllerSet blind_set(NodeBench& node, std::initializer_list<float> c,
-                        std::initializer_list<float> f, float integral = 0.0F) {
-  return position_set({0.0F}, c, f, integral, node.loop_rate());
-}
 
 /// So many counts, and the gain with which their angle gives 0.25 V.
 constexpr int kCounts = 10;
@@ -83,15 +69,6 @@ void stored(NodeBench& node, CommandId mode, float reference, std::string_view s
   node.expect_levels_at_ticks(levels_by_law(node, set, reference, counts));
 }
 
-/// Far from where any shaft is, and the gain of an integrator small for it: a shaft that turns
-/// meanwhile is as good as one at rest.
-constexpr float kFar = 75.0F;
-
-/// Whose output grows by four levels at each tick.
-void run_integrator(NodeBench& node) {
-  run_loop(node, blind_set(node, {0.0F}, {0.0F}, 0.0025F), kFar);
-}
-
 // On a held shaft, where each tick is known, and on one that may turn, where they are far apart.
 
 void comes_a_tick_late(NodeBench& node) {
@@ -140,6 +117,16 @@ void integrates_references(NodeBench& node) {
   node.expect_levels_at_ticks({4, 8, 12, 16});
 }
 
+/// Of a shaft that stands until the first voltage, at an angle that is another one from some moment
+/// on: a calibration lets the loop go on. It is small, for what turns fast gets more voltage.
+void integrates_angles(NodeBench& node) {
+  run_loop(node, blind_set(node, {0.0F}, {0.0F}, 1.0F), 0.0F);
+  node.expect_levels_at_ticks({0});
+  node.send(kCalibrateAngle, 0.1875F);
+  node.expect_levels_at_ticks({0, -4});
+  node.send(kDisable);
+}
+
 /// Half of the output before without its integral, and 8 levels; and four more each time.
 void integrates_beside_outputs(NodeBench& node) {
   run_loop(node, blind_set(node, {0.005F}, {-0.5F}, 0.0025F), kFar);
@@ -151,124 +138,31 @@ void integrates_nothing(NodeBench& node) {
   node.expect_levels_at_ticks({8, 8, 8});
 }
 
-void has_its_own_controller(NodeBench& node) {
-  node.send(proportional(node.loop_rate(), 2.0F, ControllerKind::kSpeed));
-  node.tick();
-  run_loop(node, proportional(node.loop_rate(), 1.0F), 0.75F);
-  node.expect_levels_at_ticks({16});
-  node.send(kSpeed, 0.75F);
-  node.expect_levels_at_ticks({16, 32});
-}
-
-void has_its_own_reference(NodeBench& node) {
-  node.send(proportional(node.loop_rate(), 1.0F, ControllerKind::kSpeed));
-  node.tick();
-  run_loop(node, proportional(node.loop_rate(), 1.0F), 0.75F);
-  node.send(kSpeed, 0.375F);
-  node.expect_levels_at_ticks({16, 8});
-  node.send(kPosition, 0.75F);
-  node.expect_levels_at_ticks({8, 16});
-}
-
-void begins_anew_in_another_mode(NodeBench& node) {
-  run_integrator(node);
-  node.expect_levels_at_ticks({4, 8});
-  node.send(kVoltage, 0.0F);
-  node.tick(kIdleRateHz);
-  node.expect_levels(0);
-  node.send(kPosition, kFar);
-  node.tick(node.loop_rate());
-  node.expect_levels(0);
-  node.expect_levels_at_ticks({4, 8});
-}
-
-/// What a limit holds back is held back of the same loop only.
-void begins_anew_behind_a_limit(NodeBench& node) {
-  constexpr float kTooFar = 1000.0F;
-  run_loop(node, blind_set(node, {0.01F}, {0.0F}, 0.0025F), kTooFar);
-  node.expect_levels_at_ticks({node.motor().standstill_levels});
-  node.send(kVoltage, 0.0F);
-  node.tick(kIdleRateHz);
-  node.send(kPosition, kFar);
-  node.tick(node.loop_rate());
-  node.expect_levels_at_ticks({20, 24});
-}
-
-void goes_on_with_another_reference(NodeBench& node) {
-  run_integrator(node);
-  node.send(kPosition, kFar / 2);
-  node.expect_levels_at_ticks({4, 6, 8});
-}
-
-void speed_goes_on_with_another_reference(NodeBench& node) {
-  auto set = blind_set(node, {0.0F}, {0.0F}, 0.0025F);
-  set.kind = ControllerKind::kSpeed;
-  run_loop(node, set, kFar);
-  node.expect_levels_at_ticks({4, 8});
-  node.send(kSpeed, kFar / 2);
-  node.expect_levels_at_ticks({12, 14, 16});
-}
-
-/// Those of the other controller, whose rate is none of this loop's.
-void begins_anew_with_parameters(NodeBench& node) {
-  run_integrator(node);
-  node.expect_levels_at_ticks({4, 8});
-  const auto other_rate = static_cast<std::uint16_t>(2 * node.loop_rate());
-  node.send(proportional(other_rate, 1.0F, ControllerKind::kSpeed));
-  node.expect_levels_at_ticks({12, 4, 8});
-}
-
-void goes_on_when_enabled_again(NodeBench& node) {
-  run_integrator(node);
-  node.expect_levels_at_ticks({4, 8});
+/// The shaft turns on at the voltage of the first steps, so that what it has turned since the tick
+/// before is most of a tick's way. A share of that would leave most of the voltage.
+void sees_speed_of_one_tick(NodeBench& node) {
+  constexpr double kVolts = 0.75;
+  constexpr double kLeastSpeed = 0.1;  // rad/s
+  constexpr auto kWhile = 400ms;
+  node.send(kCalibrateZero);
+  node.send(kVoltage, static_cast<float>(kVolts));
+  node.pause(kWhile);
+  const double before{node.number(kReadAngle)};
+  node.pause(kWhile);
+  const double way = double{node.number(kReadAngle)} - before;
+  const double speed = way / std::chrono::duration<double>{kWhile}.count();
   node.send(kDisable);
-  node.send(kPosition, kFar);
-  node.expect_levels_at_ticks({12, 16});
-}
-
-/// What a running loop does not mind: its shaft stands at 0, or hardly matters to it.
-void goes_on_whatever_else(NodeBench& node) {
-  run_integrator(node);
-  node.expect_levels_at_ticks({4});
-  node.send(kCalibrateZero);
-  node.expect_levels_at_ticks({8});
-  node.send(kCalibrateAngle, 0.0F);
-  node.expect_levels_at_ticks({12});
-  node.send(kBrake14);
-  node.send(kBrake15);
-  node.expect_levels_at_ticks({16});
-  node.send_bytes("20 00 C8 00 05");  // refused
-  node.send_bytes("06");              // means nothing
-  node.expect_levels_at_ticks({20});
-}
-
-/// An integrator has run. In a position mode without calibration the time between ticks is that of
-/// its loop, and calibrating lets it run.
-void latch_position(NodeBench& node, float reference) {
-  node.send(kCalibrationUnknown);
-  node.tick(kIdleRateHz);
-  node.send(kPosition, reference);
-  node.tick(node.loop_rate());
-}
-
-void begins_anew_behind_calibration(NodeBench& node) {
-  run_integrator(node);
-  node.expect_levels_at_ticks({4, 8});
-  latch_position(node, kFar);
-  node.send(kCalibrateZero);
-  node.tick();
-  node.expect_levels(0);
-  node.expect_levels_at_ticks({4, 8});
-}
-
-void begins_with_latest_reference(NodeBench& node) {
-  run_loop(node, blind_set(node, {1.0F, 2.0F}, {0.0F}), 0.75F);
-  node.tick();
-  latch_position(node, 0.5F);
-  node.send(kPosition, 0.25F);
-  node.send(kCalibrateZero);
-  node.tick();
+  if (std::fabs(speed) < kLeastSpeed) return node.leave_open("0.75 V hardly turn this shaft");
+  node.pause(kWhile);
+  auto set = proportional(node.loop_rate(), 1.0F, ControllerKind::kSpeed);
+  set.d = filter({static_cast<float>(kVolts / 2 / speed)});
+  run_loop(node, set, static_cast<float>(kVolts));
   node.expect_levels_at_ticks({16, 16});
+  node.tick();
+  const auto levels = levels_of(double{node.number(kReadVoltage)});
+  node.about("once the shaft has turned for a tick");
+  node.expect_true(levels >= 4 && levels <= 12, "some 8 levels", fmt::format("{}", levels));
+  node.send(kDisable);
 }
 
 template <int sign>
@@ -300,10 +194,6 @@ void limits_at_first(NodeBench& node) {
   run_loop(node, proportional(node.loop_rate(), 10.0F), static_cast<float>(sign) * 0.5F);
   node.expect_levels_at_ticks({sign * node.motor().standstill_levels});
   node.send(kDisable);
-}
-
-constexpr Case loop(std::string_view rule, CaseBody run) {
-  return from(kFresh, Hazard::kProgram, rule, run);
 }
 
 constexpr Clause kLoopClauses[] = {
@@ -430,6 +320,7 @@ constexpr Clause kLoopClauses[] = {
            run_turned(node, position_set({0.0F}, {0.0F}, {0.0F}, 0.75F * gain_of_counts(node)));
            node.expect_levels_at_ticks({-4, -8, -12});
          }),
+    variant("slowly", slowly(on<integrates_angles>)),
 
     must("morap.loop.negative-integral", "A negative gain of the integrator is none.",
          "firmware, feedback loop", Profiles::kFirmware),
@@ -504,61 +395,7 @@ constexpr Clause kLoopClauses[] = {
            node.turn(kCounts);
            node.expect_levels_at_ticks({0, -5, 0});  // -0.25 V
          }),
-
-    must("morap.loop.own-controller", "Each mode runs with its own controller.",
-         "recording static-mode-switch-locked", Profiles::kFirmware),
-    loop("Gains of 1 and 2.", on<has_its_own_controller>),
-    variant("slowly", slowly(on<has_its_own_controller>)),
-
-    must("morap.loop.own-reference", "Each mode follows its own reference.",
-         "recording static-mode-switch-locked", Profiles::kFirmware),
-    loop("0.75 and 0.375.", on<has_its_own_reference>),
-    variant("slowly", slowly(on<has_its_own_reference>)),
-
-    must("morap.loop.new-mode-resets", "Another mode begins its loop anew.",
-         "recording static-mode-switch-locked", Profiles::kFirmware),
-    loop("An integrator, with a voltage between.", on<begins_anew_in_another_mode>),
-    variant("slowly", slowly(on<begins_anew_in_another_mode>)),
-
-    variant("limited", loop("One that was limited.", on<begins_anew_behind_a_limit>)),
-    variant("slowly.limited", slowly(on<begins_anew_behind_a_limit>)),
-
-    must("morap.loop.new-reference-goes-on", "Another reference in the same mode does not.",
-         "recording static-position-locked", Profiles::kFirmware),
-    loop("An integrator.", on<goes_on_with_another_reference>),
-    variant("slowly", slowly(on<goes_on_with_another_reference>)),
-
-    variant("speed", loop("An integrator of speed.", on<speed_goes_on_with_another_reference>)),
-    variant("slowly.speed", slowly(on<speed_goes_on_with_another_reference>)),
-
-    must("morap.loop.new-parameters-reset",
-         "Newly installed parameters of any controller begin the running loop anew.",
-         "firmware, tick", Profiles::kFirmware),
-    loop("An integrator, and the speed controller.", on<begins_anew_with_parameters>),
-    variant("slowly", slowly(on<begins_anew_with_parameters>)),
-
-    must("morap.loop.reenabled-goes-on",
-         "A loop that was disabled and enabled between two ticks goes on.",
-         "recording static-reenable-within-tick", Profiles::kFirmware),
-    loop("An integrator.", on<goes_on_when_enabled_again>),
-    variant("slowly", slowly(on<goes_on_when_enabled_again>)),
-
-    must(
-        "morap.loop.else-goes-on",
-        "Calibrating, the brake, refused parameters and unknown identifiers do not begin a running "
-        "loop anew.",
-        "firmware, tick; recording loop-calibrate-moving", Profiles::kFirmware),
-    loop("An integrator.", on<goes_on_whatever_else>),
-    variant("slowly", slowly(on<goes_on_whatever_else>)),
-
-    must("morap.loop.latched-begins-anew",
-         "A loop whose mode came before calibration begins anew with it.",
-         "firmware, tick: the reset waits; recording loop-uncalibrated", Profiles::kFirmware),
-    loop("An integrator that has run before.", on<begins_anew_behind_calibration>),
-    variant("slowly", slowly(on<begins_anew_behind_calibration>)),
-    variant("reference",
-            loop("With the reference of that time.", on<begins_with_latest_reference>)),
-    variant("slowly.reference", slowly(on<begins_with_latest_reference>)),
+    variant("slowly", slowly(on<sees_speed_of_one_tick>)),
 };
 
 }  // namespace

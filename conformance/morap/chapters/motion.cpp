@@ -43,10 +43,10 @@ struct StartCurrents {
   bool is_seen = false;  ///< the first one was read before the start was over
 };
 
-/// Of a start, which is over in some milliseconds.
+/// Of a start, whose current is half of the first after some 8 ms.
 StartCurrents start_currents(NodeBench& node, float volts) {
   constexpr int kMostReads = 60;
-  constexpr auto kStart = 10ms;
+  constexpr auto kStart = 4ms;
   node.send(kVoltage, volts);
   const auto begin = node.now();
   StartCurrents seen;
@@ -323,8 +323,9 @@ void reads_current_of_start(NodeBench& node) {
     const auto start = start_currents(node, i % 2 == 0 ? kVolts : -kVolts);
     seen.largest = std::max(seen.largest, start.largest);
     seen.is_seen |= start.is_seen;
-    node.send(kDisable);
+    node.send(kVoltage, 0.0F);  // a shaft that coasts starts the other way with more
     node.pause(500ms);
+    node.send(kDisable);
   }
   node.expect_true(seen.largest <= 1.1 * standstill + kReadingStep,
                    fmt::format("at most {:.3f} A", standstill),

@@ -144,6 +144,15 @@ constexpr Clause kProgramClauses[] = {
          Profiles::kFirmware),
     programming("Example 15, read back.",
                 [](NodeBench& node) { expect_kept(node, kReadPositionSet, good()); }),
+    variant("alone", programming("With another message after it in the same write.",
+                                 [](NodeBench& node) {
+                                   const auto speed = node.read(kReadSpeedSet, 23);
+                                   program(node, good(), " 01 40 01 02 00 00 00 3F");
+                                   node.expect_programming(kSuccess);
+                                   node.settle();
+                                   node.expect_bytes(kReadPositionSet, good());
+                                   node.expect_same(node.read(kReadSpeedSet, 23), speed);
+                                 })),
 
     must("morap.program.speed", "A message of kind 1 becomes the speed controller, byte for byte.",
          "recording static-program-sizes", Profiles::kFirmware),
@@ -452,6 +461,7 @@ constexpr Clause kProgramClauses[] = {
                   program(node, kOtherKind);
                   node.expect_programming(kSuccess);
                   node.settle();
+                  node.expect_programming(kSuccess);
                   node.expect_same(node.read(kReadPositionSet, 31), position_before);
                   node.expect_same(node.read(kReadSpeedSet, 31), speed_before);
                 }),

@@ -108,6 +108,18 @@ constexpr Clause kReferenceClauses[] = {
           node.expect_number(kReadSpeedReference, 0.75F);
         },
         kUncalibrated),
+    variant("others", reference(
+                          "Both, then a torque and a direct voltage.",
+                          [](NodeBench& node) {
+                            node.send(kPosition, 0.25F);
+                            node.send(kSpeed, 0.75F);
+                            node.send(kTorque, 0.125F);
+                            node.send(kDirectVoltage, 0.5F);
+                            node.send(kCalibrationUnknown);
+                            node.expect_number(kReadPositionReference, 0.25F);
+                            node.expect_number(kReadSpeedReference, 0.75F);
+                          },
+                          kUncalibrated)),
 
     must("morap.reference.last", "Of several references the last one counts.",
          "firmware, commands"),
@@ -344,6 +356,19 @@ constexpr Clause kReferenceClauses[] = {
           node.expect_near(kReadAngle, 1.0, kCount);
         },
         kFresh),
+    variant("twice", reference(
+                         "0 V, and five times two angles before the next tick.",
+                         [](NodeBench& node) {
+                           node.send(kVoltage, 0.0F);
+                           node.settle();
+                           for (const float angle : {20.0F, -30.0F, 40.0F, 5.0F, 0.5F}) {
+                             node.send(kCalibrateAngle, 2 * angle);
+                             node.send(kCalibrateAngle, angle);
+                             node.expect_near(kReadAngle, double{angle}, 0.01);
+                           }
+                           node.send(kDisable);
+                         },
+                         Start::kDisabled)),
 
     must("morap.angle.over-forgetting", "Forgetting the calibration keeps the angle as it is.",
          "firmware, identifier 31"),

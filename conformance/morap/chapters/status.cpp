@@ -14,10 +14,10 @@ void enabled_by(NodeBench& node) {
   node.send(kDisable);
 }
 
-template <CommandId reference>
+template <CommandId reference, CommandId calibration = kCalibrateZero, auto... angle>
 void runs_with_calibration(NodeBench& node) {
   node.send(reference, 0.0F);
-  node.send(kCalibrateZero);
+  node.send(calibration, angle...);
   node.expect_status(kEnabled);
   node.send(kDisable);
 }
@@ -206,6 +206,9 @@ constexpr Clause kStatusClauses[] = {
          "A reference that came before calibration enables the node as soon as that comes.",
          "vector 14; recording loop-uncalibrated", Profiles::kFirmware),
     state("0 V, then 16.", on<runs_with_calibration<kVoltage>>, kUncalibrated),
+    variant("angle",
+            state("0 V, then 17.", on<runs_with_calibration<kVoltage, kCalibrateAngle, 1.0F>>,
+                  kUncalibrated)),
 
     must("morap.status.runs-with-direct-voltage",
          "So does a direct drive voltage that came before calibration.", "firmware, identifier 4",

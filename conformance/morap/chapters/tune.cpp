@@ -28,6 +28,19 @@ void tuned_after_a_larger_one(NodeBench& node) {
   tuned<kind>(node);
 }
 
+/// Of two loads that differ by little.
+template <TuneKind kind>
+void tells_loads_apart(NodeBench& node) {
+  std::vector<std::vector<std::byte>> sets;
+  for (const float inertia : {0.0431F, 0.0438F}) {
+    node.tune(kind, inertia, -9.0F);
+    node.settle();
+    sets.push_back(node.read(selector_of(kind_of(kind)), 31));
+  }
+  node.expect_true(sets[0] != sets[1], "another controller for 0.0438 kg m^2 than for 0.0431",
+                   "the same");
+}
+
 void expect_rate(NodeBench& node, TuneKind kind, float inertia, int rate_hz) {
   node.about(fmt::format("inertia {}", inertia));
   node.tune(kind, inertia, -9.0F);
@@ -64,6 +77,9 @@ constexpr Clause kTuneClauses[] = {
     variant("after-larger", programming("After a set of four coefficients each.",
                                         on<tuned_after_a_larger_one<kPdPosition>>)),
 
+    variant("close",
+            programming("Two loads that differ by little.", on<tells_loads_apart<kPdPosition>>)),
+
     must("morap.tune.pid",
          "Kind 1 gives the PID position controller of those poles, byte for byte.",
          "vectors 44 and 46; recording static-tune-pid", Profiles::kFirmware),
@@ -74,6 +90,9 @@ constexpr Clause kTuneClauses[] = {
     programming("Light and heavy loads, slow and fast poles.", on<tuned<kPiSpeed>>),
     variant("after-larger", programming("After a set of four coefficients each.",
                                         on<tuned_after_a_larger_one<kPiSpeed>>)),
+
+    variant("close",
+            programming("Two loads that differ by little.", on<tells_loads_apart<kPiSpeed>>)),
 
     must("morap.tune.position-rate",
          "A tuned position controller runs at 625 Hz with a light load and at 400 Hz with a heavy "

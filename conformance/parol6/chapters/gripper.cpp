@@ -124,6 +124,19 @@ constexpr Clause kGripperClauses[] = {
         },
         kFull),
 
+    variant("held", grip(
+                        "Held, it asks the gripper for nothing, and telemetry shows what it did.",
+                        [](BoardBench& board) {
+                          const auto calibrate = with_gripper({.mode = gripper_mode::kCalibrate});
+                          prepare(board, 100);
+                          board.act(calibrate);
+                          const int before = board.ask(calibrate).gripper.position;
+                          board.about("a calibration that is asked for all the time");
+                          board.expect(board.keep_asking(calibrate, 800ms), "gripper.position",
+                                       before);
+                        },
+                        kFull)),
+
     must("parol6.gripper.calibrates-anew",
          "A calibration opens the gripper first, also after one that was ended when it closed.",
          "gripper"),
