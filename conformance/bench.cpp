@@ -49,7 +49,7 @@ void Bench::leave_open(std::string reason) {
 }
 
 void Bench::expect_true(bool is_so, std::string_view wanted, std::string_view otherwise) {
-  if (!is_so) fail(behind(wanted), std::string{otherwise});
+  if (!is_so) fail(in_context(wanted), std::string{otherwise});
 }
 
 void Bench::expect_in_time(const InBounds& measured, std::string_view wanted,
@@ -60,10 +60,10 @@ void Bench::expect_in_time(const InBounds& measured, std::string_view wanted,
   if (judgement_.margin.empty() || room < room_) {
     room_ = room;
     judgement_.margin =
-        behind(fmt::format("{:.1f} of {:.1f} to {:.1f} {}", value, least, most, unit));
+        in_context(fmt::format("{:.1f} of {:.1f} to {:.1f} {}", value, least, most, unit));
   }
   if (value >= least && value <= most) return;
-  Judgement judgement{Verdict::kFail, behind(wanted), std::string{otherwise}};
+  Judgement judgement{Verdict::kFail, in_context(wanted), std::string{otherwise}};
   judgement.is_timing = true;
   judgement.margin = judgement_.margin;
   decide(std::move(judgement));
@@ -75,10 +75,10 @@ void Bench::expect_as_reference(std::uint64_t sessions) {
   const auto seed = std::uint64_t{random()} << 32U | random();
   const auto parted = play_sessions_(seed, sessions);
   if (!parted) return blame_rig(describe(parted.error()));
-  if (*parted) fail(behind("what the reference beside it does"), **parted);
+  if (*parted) fail(in_context("what the reference beside it does"), **parted);
 }
 
-std::string Bench::behind(std::string_view text) const {
+std::string Bench::in_context(std::string_view text) const {
   return about_.empty() ? std::string{text} : fmt::format("{} ({})", text, about_);
 }
 

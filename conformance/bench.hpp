@@ -149,7 +149,7 @@ class Bench {
   /// Nothing passes on the link any more, and no time goes by.
   [[nodiscard]] bool is_deaf() const noexcept { return error_ || is_over_; }
   /// An expectation, with what it is about.
-  [[nodiscard]] std::string behind(std::string_view text) const;
+  [[nodiscard]] std::string in_context(std::string_view text) const;
   [[nodiscard]] const std::string& subject() const noexcept { return about_; }
   void lose_link(const Error& error) { error_ = error; }
   [[nodiscard]] const Hand& hand() const noexcept { return hand_; }

@@ -110,9 +110,10 @@ class PortBench : public Bench {
       case Refusal::Matter::kStopped:
         return this->blame_rig(refusal->reason + ", or reads inverted");
       case Refusal::Matter::kUnseen:
-        return this->fail_by_silence(this->behind("a device that can be seen"), refusal->reason);
+        return this->fail_by_silence(this->in_context("a device that can be seen"),
+                                     refusal->reason);
       case Refusal::Matter::kAstray:
-        return this->fail(this->behind("a device that goes where it is led"),
+        return this->fail(this->in_context("a device that goes where it is led"),
                           "the guard stopped it: " + refusal->reason);
     }
   }

@@ -109,7 +109,7 @@ void ServerBench::remember(std::string_view arrow, std::string_view text) {
 void ServerBench::fail_by(std::string_view wanted, const Heard& heard) {
   const auto text = heard.text();
   const auto differs = std::ranges::mismatch(wanted, text).in2 - text.begin();
-  fail_at(static_cast<std::size_t>(differs), behind(wanted), std::string{text});
+  fail_at(static_cast<std::size_t>(differs), in_context(wanted), std::string{text});
 }
 
 /// Nothing that is a line came. What did come is the finding.
@@ -160,7 +160,7 @@ bool ServerBench::find_again() {
 void ServerBench::connect() {
   if (is_deaf()) return;
   remember("connects", "");
-  if (!connect_again(answer_time())) fail_by_silence(behind("a connection"), "it is refused");
+  if (!connect_again(answer_time())) fail_by_silence(in_context("a connection"), "it is refused");
 }
 
 void ServerBench::leave() {
@@ -187,7 +187,7 @@ void ServerBench::expect_end() {
   const auto word = next_word(answer_time());
   if (word) return fail_by("the end of the connection", *word);
   if (!is_deaf() && !client().has_ended) {
-    fail(behind("the end of the connection"), silence_of(answer_time()));
+    fail(in_context("the end of the connection"), silence_of(answer_time()));
   }
 }
 
@@ -204,7 +204,7 @@ void ServerBench::expect_quiet(Duration time) {
 
 void ServerBench::expect_connected() {
   if (is_deaf() || !client().has_ended) return;
-  fail_by_silence(behind("an open connection"), "the end of the connection");
+  fail_by_silence(in_context("an open connection"), "the end of the connection");
 }
 
 void ServerBench::expect_no_message(Duration time) {
@@ -259,7 +259,7 @@ void ServerBench::take_line(std::string_view line) {
   remember("<", line);
   const auto message = decode_message(line.substr(0, line.size() - 1));
   if (!message) {
-    return fail(behind("one of the server's words and CR LF"),
+    return fail(in_context("one of the server's words and CR LF"),
                 fmt::format("'{}': {}", printable(line), describe(message.error())));
   }
   const Heard heard{now(), one.count++, *message, std::string{line}};
@@ -288,7 +288,7 @@ std::optional<Heard> ServerBench::next_word(Duration within) {
 Heard ServerBench::expect(Event wanted, Duration within) {
   const auto word = next_word(within);
   if (!word) {
-    fail_by_no_line(behind(to_string(wanted)), within);
+    fail_by_no_line(in_context(to_string(wanted)), within);
     return {now()};
   }
   if (!word->is(wanted)) {
@@ -331,7 +331,7 @@ std::optional<Heard> ServerBench::event_of(std::string_view command, Event event
 Heard ServerBench::perform(std::string_view command, Event event, Duration within) {
   const auto word = event_of(command, event, within);
   if (!word) {
-    fail_by_no_line(behind(to_string(event)), within);
+    fail_by_no_line(in_context(to_string(event)), within);
     return {now()};
   }
   if (!word->is(event)) fail_by(to_string(event), *word);
@@ -344,10 +344,14 @@ void ServerBench::pass_over_accepted() {
   if (word && !word->is(Event::kAccepted)) client().words.push_front(*word);
 }
 
+ServerBench::Probe ServerBench::probe() const noexcept {
+  if (start_ == kStopped || start_ == kFresh) return {"EStop", Event::kAccepted};
+  return {"QuitEStop", start_ == kOff ? Event::kAccepted : Event::kRejected};
+}
+
 void ServerBench::expect_probe() {
-  const bool is_stopped = start_ == kStopped;
-  say(is_stopped ? "EStop" : "QuitEStop");
-  expect(is_stopped || start_ == kOff ? Event::kAccepted : Event::kRejected);
+  say(probe().command);
+  expect(probe().answer);
 }
 
 void ServerBench::not_understood(std::string_view line) {
@@ -355,6 +359,10 @@ void ServerBench::not_understood(std::string_view line) {
   say(line);
   if (is_documented()) expect(Event::kRejected);
   expect_probe();
+  about(fmt::format("{}, with {} in the same segment", printable(line), probe().command));
+  send(fmt::format("{}\r\n{}\r\n", line, probe().command));
+  if (is_documented()) expect(Event::kRejected);
+  expect(probe().answer);
 }
 
 void ServerBench::ignored(std::string_view bytes) {
@@ -383,14 +391,14 @@ Heard ServerBench::await_beat() { return await_beat_behind(now()); }
 
 Heard ServerBench::await_beat_behind(Instant time) {
   const auto beat = next_beat(time, kBeatTime + noise());
-  if (!beat) fail_by_no_line(behind("a heartbeat"), kBeatTime);
+  if (!beat) fail_by_no_line(in_context("a heartbeat"), kBeatTime);
   return beat.value_or(Heard{now()});
 }
 
 void ServerBench::expect_beat(int flags) {
   const auto wanted = fmt::format("Heartbeat:{}", flags);
   const auto beat = next_beat(now() + kBeatIsOld, kBeatTime + kBeatIsOld + noise());
-  if (!beat) return fail_by_no_line(behind(wanted), kBeatTime);
+  if (!beat) return fail_by_no_line(in_context(wanted), kBeatTime);
   if (beat->raw != wanted + "\r\n") fail_by(wanted, *beat);
 }
 

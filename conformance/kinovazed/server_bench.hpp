@@ -106,7 +106,8 @@ class ServerBench final : public PortBench<SessionSource> {
   /// What comes besides `Accepted`, whatever it is; none: nothing, which is no finding.
   [[nodiscard]] std::optional<Heard> event_of(std::string_view command, Event event,
                                               Duration within = kMotionTime);
-  /// A line that is no command: silence in profile firmware, `Rejected` in documented.
+  /// A line that is no command, alone and together with one: silence in profile firmware,
+  /// `Rejected` in documented.
   void not_understood(std::string_view line);
   /// Bytes that get no answer, in no profile.
   void ignored(std::string_view bytes);
@@ -166,6 +167,11 @@ class ServerBench final : public PortBench<SessionSource> {
   };
 
   /// Something that was said or done on a connection.
+  /// A command, and the answer that shows in a case's start that the server still serves.
+  struct Probe {
+    std::string_view command;
+    Event answer;
+  };
   struct Passed {
     std::string line;  ///< for people
     std::string raw;   ///< what was said
@@ -180,6 +186,7 @@ class ServerBench final : public PortBench<SessionSource> {
   [[nodiscard]] std::optional<Heard> next_word(Duration within);
   void pass_over_accepted();
   [[nodiscard]] std::optional<Heard> next_beat(Instant after, Duration within);
+  [[nodiscard]] Probe probe() const noexcept;
   [[nodiscard]] bool stop_all();
   [[nodiscard]] std::optional<Heard> beat_in_use();
   void drop_others();

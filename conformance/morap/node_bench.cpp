@@ -63,9 +63,9 @@ void NodeBench::send_bytes(Bytes bytes, End end) {
   keep_pace();
   if (error()) return;
   if (!written.is_addressed) {
-    fail_by_silence(behind("the address to be acknowledged"), "it was not");
+    fail_by_silence(in_context("the address to be acknowledged"), "it was not");
   } else if (written.refused > 0) {
-    fail(behind("all bytes to be acknowledged"),
+    fail(in_context("all bytes to be acknowledged"),
          fmt::format("{} of {} were not", written.refused, bytes.size()));
   }
 }
@@ -74,7 +74,7 @@ std::vector<std::byte> NodeBench::read_on(std::size_t size) {
   auto bytes = BusBench::read(subject_.address, size);
   keep_pace();
   if (!bytes && !is_deaf()) {
-    fail_by_silence(behind("the address to be acknowledged for a read"), "it was not");
+    fail_by_silence(in_context("the address to be acknowledged for a read"), "it was not");
   }
   return bytes.value_or(std::vector<std::byte>(size));
 }
@@ -92,14 +92,14 @@ float NodeBench::number(CommandId selector) {
 
 void NodeBench::expect_same(Bytes actual, Bytes wanted) {
   if (std::ranges::equal(actual, wanted)) return;
-  fail(behind(to_hex_dump(wanted)), to_hex_dump(actual));
+  fail(in_context(to_hex_dump(wanted)), to_hex_dump(actual));
 }
 
 /// What was just read.
 void NodeBench::expect_read(Bytes actual, Bytes wanted) {
   if (std::ranges::equal(actual, wanted)) return;
   const auto differs = std::ranges::mismatch(actual, wanted).in1 - actual.begin();
-  fail_at(kAddressSize + static_cast<std::size_t>(differs), behind(to_hex_dump(wanted)),
+  fail_at(kAddressSize + static_cast<std::size_t>(differs), in_context(to_hex_dump(wanted)),
           to_hex_dump(actual));
 }
 
@@ -116,7 +116,7 @@ void NodeBench::expect_read_on(std::string_view hex) {
 void NodeBench::expect_number(CommandId selector, float wanted) {
   const auto actual = read(selector, 4);
   if (std::ranges::equal(actual, bytes_of(wanted))) return;
-  fail_at(kAddressSize, behind(fmt::format("{} {}", name_of_selector(selector), wanted)),
+  fail_at(kAddressSize, in_context(fmt::format("{} {}", name_of_selector(selector), wanted)),
           fmt::format("{}", decode_float(slice<4>(Bytes{actual}, 0))));
 }
 
@@ -124,14 +124,14 @@ void NodeBench::expect_near(CommandId selector, double wanted, double tolerance)
   const auto actual = static_cast<double>(number(selector));
   if (std::fabs(actual - wanted) <= tolerance) return;
   fail_at(kAddressSize,
-          behind(fmt::format("{} {} within {}", name_of_selector(selector), wanted, tolerance)),
+          in_context(fmt::format("{} {} within {}", name_of_selector(selector), wanted, tolerance)),
           fmt::format("{}", actual));
 }
 
 void NodeBench::expect_state(CommandId selector, std::string_view name, int wanted) {
   const auto actual = std::to_integer<int>(read(selector, 1)[0]);
   if (actual == wanted) return;
-  fail_at(kAddressSize, behind(fmt::format("{} {}", name, wanted)), fmt::format("{}", actual));
+  fail_at(kAddressSize, in_context(fmt::format("{} {}", name, wanted)), fmt::format("{}", actual));
 }
 
 void NodeBench::expect_status(MotorStatus wanted) {
@@ -146,7 +146,7 @@ void NodeBench::expect_absent(BusAddress address) {
   if (is_deaf()) return;
   const auto written = write(address, {});
   if (written.is_addressed) {
-    fail(behind(fmt::format("no acknowledgement of address {:02X}", address.value)), "one");
+    fail(in_context(fmt::format("no acknowledgement of address {:02X}", address.value)), "one");
   }
 }
 

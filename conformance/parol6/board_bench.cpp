@@ -96,7 +96,7 @@ Answer BoardBench::ask(const CommandFrame& frame, Duration within) {
   last_answered_ = now();
   if (!answer) {
     fail_to_understand();
-    fail_by_silence(behind("an answer"),
+    fail_by_silence(in_context("an answer"),
                     fmt::format("none within {:.0f} ms", milliseconds(within)));
   }
   return answer.value_or(Answer{});
@@ -104,7 +104,7 @@ Answer BoardBench::ask(const CommandFrame& frame, Duration within) {
 
 /// A finding if something came that is no answer.
 void BoardBench::fail_to_understand() {
-  if (!not_understood_.empty()) fail(behind(kLayout), std::exchange(not_understood_, {}));
+  if (!not_understood_.empty()) fail(in_context(kLayout), std::exchange(not_understood_, {}));
 }
 
 std::vector<Answer> BoardBench::ask_together(const std::vector<CommandFrame>& frames) {
@@ -140,14 +140,15 @@ Answer BoardBench::expect_answer() {
   const auto answer = next_answer(now(), answer_time());
   if (!answer) {
     fail_to_understand();
-    fail(behind("an answer"), fmt::format("none within {:.0f} ms", milliseconds(answer_time())));
+    fail(in_context("an answer"),
+         fmt::format("none within {:.0f} ms", milliseconds(answer_time())));
   }
   return answer.value_or(Answer{});
 }
 
 void BoardBench::expect_silence() {
   const auto message = receive(silence_time());
-  if (message) fail(behind("no answer"), to_hex_dump(message->raw));
+  if (message) fail(in_context("no answer"), to_hex_dump(message->raw));
 }
 
 void BoardBench::expect_whole() {
@@ -168,7 +169,7 @@ void BoardBench::expect_recovery(int most) {
     drain(silence_time());
     return;
   }
-  fail(behind(fmt::format("an answer within {} good frames", most)), "silence");
+  fail(in_context(fmt::format("an answer within {} good frames", most)), "silence");
 }
 
 void BoardBench::expect(const Answer& answer, std::string_view field, std::int64_t wanted) {
@@ -194,7 +195,7 @@ void BoardBench::expect_between(const Answer& answer, std::string_view name, std
   const auto wanted = least == most
                           ? sentence_of(field, least)
                           : fmt::format("{} = {} to {}", name, least, field_text(field, most));
-  fail(behind(wanted), sentence_of(field, value));
+  fail(in_context(wanted), sentence_of(field, value));
 }
 
 /// Asks until the board answers, for it may wait for the rest of what it took for a long frame.

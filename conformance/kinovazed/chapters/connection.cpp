@@ -276,6 +276,13 @@ constexpr Clause kConnectionClauses[] = {
            server.expect_beat(69);
            server.expect_quiet(300ms);
          }),
+    variant("heard",
+            full(from(kReady, Hazard::kMove, "Nor is an end said again that somebody heard.",
+                      [](ServerBench& server) {
+                        server.perform("RunObjective:Home", Event::kObjectiveDone);
+                        connect_anew(server);
+                        server.expect_quiet(300ms);
+                      }))),
 
     must("kinovazed.connection.stays-open", "A client that says nothing stays connected.",
          "server; reference 1.13"),

@@ -147,6 +147,29 @@ void three_axes(ServerBench& server) {
   }
 }
 
+/// Along one axis, then another, and back along both. One that goes on while another is asked for
+/// leads farther.
+void expect_square_to_close(ServerBench& server) {
+  const auto even = way_back(server, kXyz, {{2, 400, kPush}, {2, -400, kPush}});
+  const auto square = way_back(
+      server, kXyz, {{2, 400, kPush}, {0, 400, kPush}, {2, -400, kPush}, {0, -400, kPush}});
+  server.about("how much farther it is back from four sides of a square than from there and back");
+  expect_time(server, std::max(square - even, Duration{}), {}, kAway + 2 * server.noise());
+}
+
+/// A mode settles in its time whatever is asked meanwhile.
+void expect_to_settle_when_asked(ServerBench& server) {
+  const auto said = server.now();
+  server.accept("SetJoystickMode:Rotation");
+  for (int i = 0; i < 3 && server.now() - said < 400ms; ++i) {
+    server.pause(100ms);
+    server.refuse("Unfold");
+  }
+  const auto set = server.expect(Event::kJoystickModeSet, ServerBench::kMotionTime);
+  server.about("from a mode that is asked about until it is set");
+  expect_time(server, set.time - said, 500ms, 680ms + 6 * server.noise());
+}
+
 /// An axis of the joystick, and the objective that lies farthest to the side to which its positive
 /// numbers lead.
 struct Side {
@@ -256,6 +279,9 @@ constexpr Clause kJoystickClauses[] = {
          }
          expect_time(server, shortest, 500ms, 680ms + kTurnsOfAMode * server.noise());
        }),
+
+    variant("asked", in(kIdle, "0.5 to 0.7 s, with three refused commands on the way.",
+                        on<expect_to_settle_when_asked>)),
 
     must("kinovazed.mode.no-mode", "NoMode is confirmed at once and leads from steering to idle.",
          "server, transcript T22"),
@@ -387,6 +413,9 @@ constexpr Clause kJoystickClauses[] = {
                       on<three_axes<kXyz>>)),
     variant("rotation", in(kIdle, "There and back on each axis, and not back by another.",
                            on<three_axes<kRotation>>)),
+
+    variant("square", in(kIdle, "Four pushes of two axes of XYZ lead back to where they began.",
+                         on<expect_square_to_close>)),
 
     must("kinovazed.joystick.own-axes",
          "A mode has its own axes also right after another one, with no NoMode between.",

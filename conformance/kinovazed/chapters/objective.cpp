@@ -49,6 +49,20 @@ constexpr auto kHijack = "SetActiveObjective:Antenna";
 
 constexpr Duration kDetour = 600ms;
 
+/// Home, where the arm has just been, replaces an objective that has just begun.
+void expect_under_way_first(ServerBench& server) {
+  run(server, "Home");
+  const auto there = time_of(server, "SuckDoor");
+  run(server, "Home");
+  const auto said = server.now();
+  server.accept("RunObjective:SuckDoor");
+  server.say("SetActiveObjective:Home");
+  const auto done = server.expect(Event::kObjectiveDone, 2 * ServerBench::kMotionTime);
+  server.about("to SuckDoor, with Home made active on the way");
+  expect_time(server, done.time - said, there - 200ms - server.noise(),
+              2 * ServerBench::kMotionTime);
+}
+
 /// Shorter than any arm takes for the last 0.05 m.
 constexpr Duration kStoppedFor = 80ms;
 
@@ -340,6 +354,8 @@ constexpr Clause kObjectiveClauses[] = {
                server.about("the way back after a run that was replaced");
                expect_time(server, detour(server, kHijack), kDetour, ServerBench::kMotionTime);
              })),
+    variant("next", in(kIdle, "The way-point that is under way comes first, with Home meanwhile.",
+                       on<expect_under_way_first>)),
 
     must("kinovazed.objective.no-hijack",
          "SetActiveObjective leaves the objective that runs alone.",

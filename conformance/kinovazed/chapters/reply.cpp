@@ -266,6 +266,14 @@ constexpr Clause kReplyClauses[] = {
             full(from(kFolded, Hazard::kMove, "Three console commands get no answer in retracted.",
                       on<console>))),
 
+    variant("fresh",
+            from(kFresh, Hazard::kState, "Nor do two of them before an objective was chosen.",
+                 [](ServerBench& server) {
+                   server.ignored("GetObjectivePosition\r\n");
+                   server.ignored("GetAbsolutePosition\r\n");
+                   server.expect_silence();
+                 })),
+
     must("kinovazed.console.harmless", "The three console commands change no state.",
          "server, recording service-commands-silent"),
     variant("stopped", look("Beat 3 follows.", on<console_harmless<State::kEmergencyStopped>>)),

@@ -132,6 +132,26 @@ void expect_folded_from_afar(ServerBench& server) {
   expect_time(server, after, usual - 300ms - server.noise(), ServerBench::kMotionTime);
 }
 
+/// The way to Home from where a mode ended an objective, some time after Freeze and Unfreeze.
+Duration way_from_unfinished(ServerBench& server, Duration after) {
+  (void)time_of(server, "Home");
+  server.accept("RunObjective:Antenna");
+  server.pause(1s);
+  server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+  server.perform("Freeze", Event::kFreezed);
+  server.perform("Unfreeze", Event::kUnfreezed);
+  server.pause(after);
+  return time_of(server, "Home");
+}
+
+void expect_standing_after_unfreeze(ServerBench& server) {
+  const auto usual = way_from_unfinished(server, 0ms);
+  const auto after = way_from_unfinished(server, 3s);
+  const auto tolerance = 400ms + 2 * server.noise();
+  server.about("the way back from an objective that was ended, 3 s after Unfreeze");
+  expect_time(server, after, usual - tolerance, usual + tolerance);
+}
+
 constexpr Clause kStateClauses[] = {
     must("kinovazed.state.start", "A server that was just started is in emergencyStopped.",
          "server; reference 6.1"),
@@ -392,6 +412,8 @@ constexpr Clause kStateClauses[] = {
                server.perform("Unfreeze", Event::kUnfreezed);
                server.expect_beat(21);
              })),
+    variant("stands", in(kIdle, "An objective that was ended is not gone on with.",
+                         on<expect_standing_after_unfreeze>)),
 
     must("kinovazed.state.frozen.refused",
          "In frozen all commands but EStop, Unfreeze and Freeze are Rejected and change "

@@ -12,7 +12,7 @@ float gain_of_counts(NodeBench& node) {
   return 0.25F / (static_cast<float>(kCounts) * count);
 }
 
-/// The same behind a turn, with a reference of 0.
+/// The same after a turn, with a reference of 0.
 void run_turned(NodeBench& node, const ControllerSet& set) {
   node.send(set);
   node.send(kCalibrateZero);

@@ -23,7 +23,7 @@ void has_its_own_reference(NodeBench& node) {
   node.expect_levels_at_ticks({8, 16});
 }
 
-void begins_anew_once_disabled(NodeBench& node) {
+void begins_again_once_disabled(NodeBench& node) {
   run_slow_loop(node);
   node.expect_levels(16);
   node.send(kDisable);
@@ -52,7 +52,7 @@ void follows_small_references(NodeBench& node) {
   node.expect_levels_at_ticks({16, 8});
 }
 
-void begins_anew_in_another_mode(NodeBench& node) {
+void begins_again_in_another_mode(NodeBench& node) {
   run_integrator(node);
   node.expect_levels_at_ticks({4, 8});
   node.send(kVoltage, 0.0F);
@@ -65,7 +65,7 @@ void begins_anew_in_another_mode(NodeBench& node) {
 }
 
 /// What a limit holds back is held back of the same loop only.
-void begins_anew_behind_a_limit(NodeBench& node) {
+void begins_again_after_a_limit(NodeBench& node) {
   constexpr float kTooFar = 1000.0F;
   run_loop(node, blind_set(node, {0.01F}, {0.0F}, 0.0025F), kTooFar);
   node.expect_levels_at_ticks({node.motor().standstill_levels});
@@ -92,7 +92,7 @@ void speed_goes_on_with_another_reference(NodeBench& node) {
 }
 
 /// Those of the other controller, whose rate is none of this loop's.
-void begins_anew_with_parameters(NodeBench& node) {
+void begins_again_with_parameters(NodeBench& node) {
   run_integrator(node);
   node.expect_levels_at_ticks({4, 8});
   const auto other_rate = static_cast<std::uint16_t>(2 * node.loop_rate());
@@ -133,7 +133,7 @@ void latch_position(NodeBench& node, float reference) {
   node.tick(node.loop_rate());
 }
 
-void begins_anew_behind_calibration(NodeBench& node) {
+void begins_again_after_calibration(NodeBench& node) {
   run_integrator(node);
   node.expect_levels_at_ticks({4, 8});
   latch_position(node, kFar);
@@ -165,14 +165,14 @@ constexpr Clause kLoopModeClauses[] = {
     variant("slowly", slowly(on<has_its_own_reference>)),
     variant("slowly.small", slowly(on<follows_small_references>)),
 
-    must("morap.loop.new-mode-resets", "Another mode begins its loop anew.",
+    must("morap.loop.new-mode-resets", "Another mode begins its loop again.",
          "recording static-mode-switch-locked", Profiles::kFirmware),
-    loop("An integrator, with a voltage between.", on<begins_anew_in_another_mode>),
-    variant("slowly", slowly(on<begins_anew_in_another_mode>)),
+    loop("An integrator, with a voltage between.", on<begins_again_in_another_mode>),
+    variant("slowly", slowly(on<begins_again_in_another_mode>)),
 
-    variant("slowly.disabled", slowly(on<begins_anew_once_disabled>)),
-    variant("limited", loop("One that was limited.", on<begins_anew_behind_a_limit>)),
-    variant("slowly.limited", slowly(on<begins_anew_behind_a_limit>)),
+    variant("slowly.disabled", slowly(on<begins_again_once_disabled>)),
+    variant("limited", loop("One that was limited.", on<begins_again_after_a_limit>)),
+    variant("slowly.limited", slowly(on<begins_again_after_a_limit>)),
 
     must("morap.loop.new-reference-goes-on", "Another reference in the same mode does not.",
          "recording static-position-locked", Profiles::kFirmware),
@@ -183,10 +183,10 @@ constexpr Clause kLoopModeClauses[] = {
     variant("slowly.speed", slowly(on<speed_goes_on_with_another_reference>)),
 
     must("morap.loop.new-parameters-reset",
-         "Newly installed parameters of any controller begin the running loop anew.",
+         "Newly installed parameters of any controller begin the running loop again.",
          "firmware, tick", Profiles::kFirmware),
-    loop("An integrator, and the speed controller.", on<begins_anew_with_parameters>),
-    variant("slowly", slowly(on<begins_anew_with_parameters>)),
+    loop("An integrator, and the speed controller.", on<begins_again_with_parameters>),
+    variant("slowly", slowly(on<begins_again_with_parameters>)),
 
     must("morap.loop.reenabled-goes-on",
          "A loop that was disabled and enabled between two ticks goes on.",
@@ -197,16 +197,16 @@ constexpr Clause kLoopModeClauses[] = {
     must(
         "morap.loop.else-goes-on",
         "Calibrating, the brake, refused parameters and unknown identifiers do not begin a running "
-        "loop anew.",
+        "loop again.",
         "firmware, tick; recording loop-calibrate-moving", Profiles::kFirmware),
     loop("An integrator.", on<goes_on_whatever_else>),
     variant("slowly", slowly(on<goes_on_whatever_else>)),
 
     must("morap.loop.latched-begins-anew",
-         "A loop whose mode came before calibration begins anew with it.",
+         "A loop whose mode came before calibration begins again with it.",
          "firmware, tick: the reset waits; recording loop-uncalibrated", Profiles::kFirmware),
-    loop("An integrator that has run before.", on<begins_anew_behind_calibration>),
-    variant("slowly", slowly(on<begins_anew_behind_calibration>)),
+    loop("An integrator that has run before.", on<begins_again_after_calibration>),
+    variant("slowly", slowly(on<begins_again_after_calibration>)),
     variant("reference",
             loop("With the reference of that time.", on<begins_with_latest_reference>)),
     variant("slowly.reference", slowly(on<begins_with_latest_reference>)),

@@ -24,15 +24,15 @@ void calibrate(NodeBench& node) {
   node.tick();
 }
 
-/// In a mode of 200 Hz: the levels right before and right behind the next tick.
-void expect_step_at_tick(NodeBench& node, int before, int behind, std::uint16_t rate_hz = 0) {
+/// In a mode of 200 Hz: the levels right before and right after the next tick.
+void expect_step_at_tick(NodeBench& node, int before, int after, std::uint16_t rate_hz = 0) {
   node.send(kReadVoltage);
   node.wait_for_tick();
   node.about("right before the tick");
   node.expect_read_levels(before);
   node.tick(rate_hz);
   node.about("right after the tick");
-  node.expect_read_levels(behind);
+  node.expect_read_levels(after);
   node.about({});
 }
 
@@ -43,7 +43,7 @@ void expect_voltage_at_tick(NodeBench& node) {
 
 constexpr int kMostLevels = 427;  // 20.015625 V
 
-/// At 1 V; to the first tick behind it.
+/// At 1 V; to the first tick after it.
 void turn_fast(NodeBench& node) {
   calibrate(node);
   node.send(kVoltage, 1.0F);
@@ -91,14 +91,14 @@ void expect_direct_settled(NodeBench& node, float volts, int levels) {
 }
 
 /// The voltage at the first tick after a reference; none if nobody knows that it was read before
-/// the second one. `behind`: a mode that it is in already, at 0.
+/// the second one. `before`: a mode that it is in already, at 0.
 std::optional<int> first_levels(NodeBench& node, CommandId mode, float reference,
-                                std::optional<CommandId> behind) {
+                                std::optional<CommandId> before) {
   constexpr int kMostReads = 12;
   const auto between_ticks = tick_period(kIdleRateHz) * 9 / 10;
   node.bring_to(kFree);
-  if (behind) {
-    node.send(*behind, 0.0F);
+  if (before) {
+    node.send(*before, 0.0F);
     node.settle();
   }
   auto before_it = node.now();
@@ -118,11 +118,11 @@ std::optional<int> first_levels(NodeBench& node, CommandId mode, float reference
 /// Of a free shaft at rest: it is driven for some ticks and let go. In real time the first tick may
 /// be missed, and gets further tries.
 void expect_first_levels(NodeBench& node, CommandId mode, float reference, int levels,
-                         std::optional<CommandId> behind = {}) {
+                         std::optional<CommandId> before = {}) {
   constexpr int kTries = 12;
   std::optional<int> first;
   for (int i = 0; i < kTries && !first && !node.is_over(); ++i) {
-    first = first_levels(node, mode, reference, behind);
+    first = first_levels(node, mode, reference, before);
   }
   if (!first) return node.leave_open("this bus is too slow to be read between two ticks");
   const int last = *first;
@@ -133,16 +133,16 @@ void expect_first_levels(NodeBench& node, CommandId mode, float reference, int l
 
 /// More than drives the rated current.
 template <CommandId mode, int sign, bool is_limited>
-void drive_behind(NodeBench& node, std::optional<CommandId> behind) {
+void drive_after(NodeBench& node, std::optional<CommandId> before) {
   const int most = node.motor().standstill_levels;
   const int asked = most * 3 / 2;
   expect_first_levels(node, mode, static_cast<float>(sign * asked) * kVoltsPerLevel,
-                      sign * (is_limited ? most : asked), behind);
+                      sign * (is_limited ? most : asked), before);
 }
 
 template <CommandId mode, int sign, bool is_limited>
 void drive_at_rest(NodeBench& node) {
-  drive_behind<mode, sign, is_limited>(node, {});
+  drive_after<mode, sign, is_limited>(node, {});
 }
 
 constexpr Case at_rest(CaseBody run) { return from(kFree, Hazard::kMove, run); }
@@ -299,7 +299,7 @@ constexpr Clause kOutputClauses[] = {
           }),
     variant("free", at_rest(on<drive_at_rest<kDirectVoltage, 1, false>>)),
     variant("behind-voltage", at_rest([](NodeBench& node) {
-              drive_behind<kDirectVoltage, 1, false>(node, kVoltage);
+              drive_after<kDirectVoltage, 1, false>(node, kVoltage);
             })),
 
     must("morap.direct.limit", "No voltage beyond 20 V is applied, which reads as 20.015625 V.",

@@ -398,7 +398,7 @@ constexpr Clause kProgramClauses[] = {
     programming("All but the checksum.", [](NodeBench& node) { expect_unused(node, ""); }),
 
     must("morap.program.starts-anew",
-         "Each message begins anew, whatever the one before left open.", "vector 38"),
+         "Each message begins again, whatever the one before left open.", "vector 38"),
     programming("Half of example 11, then example 15.",
                 [](NodeBench& node) {
                   program(node, kSpeedSet.substr(0, 29));

@@ -165,7 +165,7 @@ constexpr Clause kReadingClauses[] = {
          }),
 
     must("morap.read.short",
-         "Reading fewer bytes than there are does no harm: the next read begins anew.",
+         "Reading fewer bytes than there are does no harm: the next read begins again.",
          "firmware, reading"),
     from(kUncalibrated, Hazard::kState, "Two bytes, one byte, all four.",
          [](NodeBench& node) {
@@ -190,7 +190,7 @@ constexpr Clause kReadingClauses[] = {
          }),
 
     Requirement{"morap.read.wrap", Level::kMay,
-                "Byte 256 of a read of a number begins it anew, with a new value.",
+                "Byte 256 of a read of a number begins it again, with a new value.",
                 "firmware, vector 68", Profiles::kFirmware},
     from(kFresh, Hazard::kState, "260 bytes, and the shaft turns between.",
          [](NodeBench& node) {

@@ -14,6 +14,17 @@ void kept_over(NodeBench& node) {
   node.expect_number(kReadSpeedReference, 0.75F);
 }
 
+template <CommandId... between>
+void kept_beside(NodeBench& node) {
+  node.send(kPosition, 0.25F);
+  node.send(kSpeed, 0.75F);
+  constexpr float kLittle = 0.5F;  // V, or N m
+  (node.send(between, kLittle), ...);
+  node.send(kCalibrationUnknown);  // it ends what was started
+  node.expect_number(kReadPositionReference, 0.25F);
+  node.expect_number(kReadSpeedReference, 0.75F);
+}
+
 /// A real shaft turns by itself a little.
 constexpr double kCount = 1e-4;  // of any known motor, and a little more
 
@@ -97,29 +108,9 @@ constexpr Clause kReferenceClauses[] = {
 
     must("morap.reference.voltage-apart", "A drive voltage leaves both references alone.",
          "firmware, commands"),
-    reference(
-        "Both, then a voltage.",
-        [](NodeBench& node) {
-          node.send(kPosition, 0.25F);
-          node.send(kSpeed, 0.75F);
-          node.send(kVoltage, 1.0F);
-          node.send(kCalibrationUnknown);
-          node.expect_number(kReadPositionReference, 0.25F);
-          node.expect_number(kReadSpeedReference, 0.75F);
-        },
-        kUncalibrated),
-    variant("others", reference(
-                          "Both, then a torque and a direct voltage.",
-                          [](NodeBench& node) {
-                            node.send(kPosition, 0.25F);
-                            node.send(kSpeed, 0.75F);
-                            node.send(kTorque, 0.125F);
-                            node.send(kDirectVoltage, 0.5F);
-                            node.send(kCalibrationUnknown);
-                            node.expect_number(kReadPositionReference, 0.25F);
-                            node.expect_number(kReadSpeedReference, 0.75F);
-                          },
-                          kUncalibrated)),
+    reference("Both, then a voltage.", on<kept_beside<kVoltage>>, kUncalibrated),
+    variant("others", reference("Both, then a torque and a direct voltage.",
+                                on<kept_beside<kTorque, kDirectVoltage>>, kUncalibrated)),
 
     must("morap.reference.last", "Of several references the last one counts.",
          "firmware, commands"),
