@@ -75,19 +75,22 @@ void estop_while_failing(ServerBench& server, std::initializer_list<std::string_
   server.accept("QuitEStop");
 }
 
-/// Each call fails once. One that the command makes stops the arm, of others nobody knows.
+/// Each call fails once. One that the command makes stops the arm, of others nobody knows. The arm
+/// is held, so that it does not get anywhere before a beat is heard.
 void expect_calls(ServerBench& server, const Calls& one, State state) {
   for (const auto call : kAllCalls) {
     const bool is_made = std::ranges::find(one.made, call) != one.made.end();
     if ((is_made && is_fatal(call)) || server.is_over()) continue;
     start_again(server);
     if (state == kSteering) server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+    hold(server);
     server.touch(fmt::format("arm.fail.{}", call), 1);
     server.say(one.command);
     server.about(fmt::format("{} while {} fails", one.command, call));
     server.pause(one.takes + 200ms + 6 * server.noise());
     server.expect_beat(is_made ? 3 : one.beat);
     server.touch(fmt::format("arm.fail.{}", call), 0);
+    let_go(server);
   }
 }
 
@@ -364,6 +367,7 @@ constexpr Clause kArmClauses[] = {
        [](ServerBench& server) {
          server.touch("arm.fail.joystick_release", 1);
          server.perform("Freeze", Event::kFreezed);
+         server.pause(200ms + 6 * server.noise());
          server.expect_beat(3);
        }),
 
@@ -375,6 +379,7 @@ constexpr Clause kArmClauses[] = {
        [](ServerBench& server) {
          server.touch("arm.fail.joystick_axes_write", 1);
          server.accept("MoveJoystick:1:1:1");
+         server.pause(200ms + 6 * server.noise());
          server.expect_beat(3);
        }),
 
@@ -394,8 +399,9 @@ constexpr Clause kArmClauses[] = {
     in(kInitializing, "Initialized comes within 0.2 s.",
        [](ServerBench& server) {
          enter(server, kInitializing);
+         server.pause(200ms + 6 * server.noise());
          server.touch("arm.mode", 1);
-         server.expect(Event::kInitialized, 200ms + 2 * server.noise());
+         server.expect(Event::kInitialized, 200ms + 4 * server.noise());
        }),
 
     unobservable("what reaches the arm is not on the wire",
