@@ -34,6 +34,15 @@ void half_close(ServerBench& server) {
   server.expect_close();
 }
 
+void expect_soon_closed(ServerBench& server) {
+  (void)server.await_beat();
+  const auto begin = server.now();
+  server.finish_sending();
+  server.expect_close();
+  server.about("from a half-close right after a beat to the end");
+  expect_time(server, server.now() - begin, {}, kSoon + server.noise());
+}
+
 void say_while_waiting(ServerBench& server, std::string_view text) {
   server.as(1);
   server.connect();
@@ -43,10 +52,13 @@ void say_while_waiting(ServerBench& server, std::string_view text) {
 void expect_next_served(ServerBench& server, void (*end)(ServerBench& server)) {
   say_while_waiting(server, "EStop");
   server.as(0);
+  (void)server.await_beat();
+  const auto begin = server.now();
   end(server);
   server.as(1);
-  server.about("the client that waited");
-  server.expect(Event::kAccepted);
+  server.about("the client that waited, from the end of the first on");
+  const auto answer = server.expect(Event::kAccepted);
+  expect_time(server, answer.time - begin, {}, kSoon + 2 * server.noise());
   server.accept("EStop");
 }
 

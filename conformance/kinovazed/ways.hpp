@@ -53,12 +53,17 @@ void initialize_at_home(ServerBench& server);
 /// How long an objective takes, from its command on. No message tells where the arm is; this does.
 [[nodiscard]] Duration time_of(ServerBench& server, std::string_view objective);
 
+/// Within which a server does what nothing else has to come before.
+inline constexpr Duration kSoon = std::chrono::milliseconds{500};
+
 /// Says a command and ends its sending: the answer comes, and the end.
 void half_close(ServerBench& server);
+/// The end does not wait for the next beat.
+void expect_soon_closed(ServerBench& server);
 
 /// A second client connects and speaks while the first is served.
 void say_while_waiting(ServerBench& server, std::string_view text);
-/// Such a one is served once the first has ended its connection in this way.
+/// Such a one is served soon once the first has ended its connection in this way.
 void expect_next_served(ServerBench& server, void (*end)(ServerBench& server));
 
 void expect_hung(ServerBench& server);

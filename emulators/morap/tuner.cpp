@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emulators/morap/tuner.hpp"
 
+#include <cmath>
+#include <limits>
+
 // Compiled with -ffp-contract=off, as everything under emulators/. The order of the operations is
 // the firmware's: exact arithmetic would cancel what shows in the last bits here.
 namespace armjig::morap::emulation {
@@ -105,6 +108,32 @@ ControllerSet pi_speed(const Design& design) noexcept {
                     {r0, 0.0F, s1 - s0 / r0, t2, t1 - t0 / r0, s0 / r0});
 }
 
+ControllerSet designed(TuneKind kind, const Design& design) noexcept {
+  switch (kind) {
+    case TuneKind::kPdPosition:
+      return pd_position(design);
+    case TuneKind::kPidPosition:
+      return pid_position(design);
+    case TuneKind::kPiSpeed:
+      break;
+  }
+  return pi_speed(design);
+}
+
+/// Which sign and payload a NaN has that was computed is the compiler's choice; ours is always the
+/// same.
+float with_plain_nan(float number) noexcept {
+  return std::isnan(number) ? std::numeric_limits<float>::quiet_NaN() : number;
+}
+
+ControllerSet with_plain_nans(ControllerSet set) noexcept {
+  for (auto* const coefficients : {&set.c, &set.d, &set.f}) {
+    for (auto& number : coefficients->values) number = with_plain_nan(number);
+  }
+  set.integral = with_plain_nan(set.integral);
+  return set;
+}
+
 bool is_refused(const TuneRequest& request, const Profile& profile) noexcept {
   const auto& [kind, inertia, pole] = request;
   if (inertia < 0.0F || inertia > kLargestInertia || pole > 0.0F || pole < kFastestPole)
@@ -118,16 +147,7 @@ bool is_refused(const TuneRequest& request, const Profile& profile) noexcept {
 std::optional<ControllerSet> tune(const TuneRequest& request, const MotorConstants& motor,
                                   const Profile& profile) noexcept {
   if (is_refused(request, profile)) return std::nullopt;
-  const auto design = design_for(request, motor);
-  switch (request.kind) {
-    case TuneKind::kPdPosition:
-      return pd_position(design);
-    case TuneKind::kPidPosition:
-      return pid_position(design);
-    case TuneKind::kPiSpeed:
-      break;
-  }
-  return pi_speed(design);
+  return with_plain_nans(designed(request.kind, design_for(request, motor)));
 }
 
 }  // namespace armjig::morap::emulation

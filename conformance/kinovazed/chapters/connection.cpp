@@ -187,6 +187,7 @@ constexpr Clause kConnectionClauses[] = {
          "Complete lines before a half-close are served and answered; then the server closes.",
          "server, recording connection-half-close"),
     look("EStop and a half-close give Accepted and the end.", on<half_close>),
+    variant("soon", look("The end comes within half a second.", on<expect_soon_closed>)),
     variant("next", look("One that waits when another half-closes is answered.",
                          [](ServerBench& server) { expect_next_served(server, half_close); })),
     variant("while-waiting",

@@ -68,7 +68,8 @@ std::string describe(const DriveEvent& event) {
     case Kind::kUnreadable:
       return "the server said something that is no message";
     case Kind::kArmStopped:
-      return "the server stopped by itself: trouble with its arm; QuitEStop, then Initialize";
+      return "the server stopped, which was not asked for here: trouble with its arm, or a "
+             "supervisor; QuitEStop, then Initialize";
     case Kind::kStickReleased:
       return "the joystick was let go, because nobody renewed it";
     case Kind::kSilent:

@@ -57,7 +57,8 @@ struct DriveEvent {
     kEnded,          ///< the command `request`, as `ending` says
     kUnasked,        ///< the server said `said`, and nobody waits for it
     kUnreadable,     ///< the server said something that is no message
-    kArmStopped,     ///< emergency stop without our asking: the server had trouble with its arm
+    kArmStopped,     ///< emergency stop that the drive did not ask for: trouble with the arm, or a
+                     ///< guard
     kStickReleased,  ///< by the watchdog
     kSilent,         ///< no beat for `patience::kBeat`
     kBack,           ///< a beat again

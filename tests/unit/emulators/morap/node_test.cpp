@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <charconv>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "emulators/morap/tuner.hpp"
@@ -68,6 +71,19 @@ TEST(MorapTuner, ComputesEveryBitOfTheTables) {
     const auto set = tune(request, motor, kFirmware);
     ASSERT_TRUE(set);
     EXPECT_TRUE(same_bytes(encode(*set), hex(tuning.set))) << tuning.motor << tuning.kind;
+  }
+}
+
+/// Compilers differ in the sign of a NaN that they let a machine compute.
+TEST(MorapTuner, ComputesOneNan) {
+  for (const auto kind : {TuneKind::kPdPosition, TuneKind::kPidPosition, TuneKind::kPiSpeed}) {
+    const auto set = tune({kind, 0.0F, -1.0F}, dcx22l().motor, kFirmware);
+    ASSERT_TRUE(set);
+    for (const auto& [count, values] : {set->c, set->d, set->f}) {
+      for (const float value : std::span{values}.first(count)) {
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(value), 0x7FC00000U);
+      }
+    }
   }
 }
 
