@@ -288,20 +288,20 @@ constexpr Clause kDeathClauses[] = {
          "Some errors end the process: its clients see the end of their connections, those that "
          "wait, too.",
          "server; reference 11.3", Profiles::kFirmware),
-    dies("Of three clients, two of which wait, each sees the end.",
-         [](ServerBench& server) {
-           for (const auto waiting : {1U, 2U}) {
-             server.as(waiting);
-             server.connect();
-           }
-           server.as(0);
-           ask_position(server);
-           for (const auto client : {0U, 1U, 2U}) {
-             server.as(client);
-             server.about(fmt::format("client {} of three", client + 1));
-             server.expect_end();
-           }
-         }),
+    quick(dies("Of three clients, two of which wait, each sees the end.",
+               [](ServerBench& server) {
+                 for (const auto waiting : {1U, 2U}) {
+                   server.as(waiting);
+                   server.connect();
+                 }
+                 server.as(0);
+                 ask_position(server);
+                 for (const auto client : {0U, 1U, 2U}) {
+                   server.as(client);
+                   server.about(fmt::format("client {} of three", client + 1));
+                   server.expect_end();
+                 }
+               })),
 
     unobservable("it needs a file of objectives that no client can give",
                  must("kinovazed.death.first-point",
@@ -396,8 +396,8 @@ constexpr Clause kDeathClauses[] = {
         dies("The next client hears nothing.", on<hangs<end_at_freeze<&ServerBench::throw_away>>>)),
     variant("closed",
             dies("The next client hears nothing.", on<hangs<end_at_freeze<&ServerBench::leave>>>)),
-    variant("half-closed", dies("The next client hears nothing.",
-                                on<hangs<end_at_freeze<&ServerBench::finish_sending>>>)),
+    variant("half-closed", quick(dies("The next client hears nothing.",
+                                      on<hangs<end_at_freeze<&ServerBench::finish_sending>>>))),
 
     must("kinovazed.death.not-mute",
          "One message after the one that fails does not mute it, nor do lines of one message each: "

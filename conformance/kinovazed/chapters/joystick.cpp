@@ -385,13 +385,13 @@ constexpr Clause kJoystickClauses[] = {
 
     must("kinovazed.joystick.holds", "A deflection moves the arm until the next one.",
          "server; reference 8.2"),
-    in(kIdle, "Two seconds up, and Home is far away.",
-       [](ServerBench& server) {
-         rise_from_home(server);
-         server.pause(2s);
-         server.accept(kStop);
-         expect_far_from_home(server);
-       }),
+    quick(in(kIdle, "Two seconds up, and Home is far away.",
+             [](ServerBench& server) {
+               rise_from_home(server);
+               server.pause(2s);
+               server.accept(kStop);
+               expect_far_from_home(server);
+             })),
 
     must("kinovazed.joystick.client-lost",
          "A deflection moves the arm on when its client has left.", "server, transcript S4"),
@@ -428,19 +428,20 @@ constexpr Clause kJoystickClauses[] = {
          "along +z, -x and -y of the frame of the objectives; where somebody has turned the arm "
          "by half, along +x and +y.",
          "document; server; reference 8.1"),
-    in(kIdle, "Antenna is nearer after a push up, SuckDoor to the right and Handle to the front.",
-       [](ServerBench& server) {
-         const auto up = nearer_by(server, {2, "Antenna"});
-         const auto to_the_right = nearer_by(server, {0, "SuckDoor"});
-         const auto to_the_front = nearer_by(server, {1, "Handle"});
-         const int turned = to_the_right < 0ms ? -1 : 1;
-         server.about("Antenna after a push up, against one down");
-         expect_time(server, up, kAway, ServerBench::kMotionTime);
-         server.about("SuckDoor after a push in x, against the other way");
-         expect_time(server, turned * to_the_right, kAway, ServerBench::kMotionTime);
-         server.about("Handle after a push in y, against the other way, turned like x");
-         expect_time(server, turned * to_the_front, kAway, ServerBench::kMotionTime);
-       }),
+    quick(in(kIdle,
+             "Antenna is nearer after a push up, SuckDoor to the right and Handle to the front.",
+             [](ServerBench& server) {
+               const auto up = nearer_by(server, {2, "Antenna"});
+               const auto to_the_right = nearer_by(server, {0, "SuckDoor"});
+               const auto to_the_front = nearer_by(server, {1, "Handle"});
+               const int turned = to_the_right < 0ms ? -1 : 1;
+               server.about("Antenna after a push up, against one down");
+               expect_time(server, up, kAway, ServerBench::kMotionTime);
+               server.about("SuckDoor after a push in x, against the other way");
+               expect_time(server, turned * to_the_right, kAway, ServerBench::kMotionTime);
+               server.about("Handle after a push in y, against the other way, turned like x");
+               expect_time(server, turned * to_the_front, kAway, ServerBench::kMotionTime);
+             })),
 
     must("kinovazed.joystick.proportional", "Half the deflection leads half as far.",
          "server; reference 8.1"),

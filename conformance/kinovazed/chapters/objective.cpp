@@ -219,8 +219,9 @@ constexpr Clause kObjectiveClauses[] = {
          }
        }),
 
-    variant("steered", in(kIdle, "Within half a second, after steering and no other objective.",
-                          on<expect_current_behind_steering>)),
+    variant("steered",
+            quick(in(kIdle, "Within half a second, after steering and no other objective.",
+                     on<expect_current_behind_steering>))),
 
     variant("in-another", in(kIdle, "Within half a second, in the middle of OpenDoor.",
                              on<expect_current_in_the_middle>)),

@@ -243,7 +243,7 @@ constexpr Clause kStateClauses[] = {
 
     must("kinovazed.state.idle.mode", "In idle SetJoystickMode leads to settingMode.",
          "server, state-command-matrix"),
-    in(kIdle, "Beat 5, then JoystickModeSet.", on<mode>),
+    quick(in(kIdle, "Beat 5, then JoystickModeSet.", on<mode>)),
 
     must("kinovazed.state.idle.objective", "In idle RunObjective leads to runningSequence.",
          "server, state-command-matrix"),

@@ -26,6 +26,24 @@ void speed(BoardBench& board) {
   for (const int value : {150, 256, 1000, 1500}) expect_jog(board, 0, value, 500ms);
 }
 
+/// Whatever a loop takes for a pass, it meets the instants of at most one of these speeds, whose
+/// intervals are 59, 61 and 67 us; the steps of the others come late, and all that follow.
+void expect_late_steps_to_delay(BoardBench& board) {
+  constexpr double kMostShare = 96;  // percent, of a loop of 3 us and more
+  double least = 100;
+  for (const int speed : {16'949, 16'393, 14'925}) {
+    const auto stretch = run(board, jog(kJ6, speed), 1s);
+    board.keep_asking(jog(kJ6, -speed), 1s);
+    board.act(idle());
+    const std::chrono::duration<double> longest = stretch.after.received - stretch.before.asked;
+    const double told = speed * longest.count() * (1 + kClockError);
+    least = std::min(least, 100.0 * steps(stretch, kJ6) / told);
+  }
+  board.about("the slowest of three jogs, against what it was told");
+  board.expect_in_time({least, 0, kMostShare, "%"}, "late steps to delay the next ones",
+                       "steps as often as told");
+}
+
 /// The speed that is reported, and the steps that are made.
 void expect_clamped(BoardBench& board, std::size_t joint, int speed, int most) {
   board.about(fmt::format("a jog of j{} at {} steps/s", joint + 1, speed));
@@ -82,6 +100,8 @@ constexpr Clause kJogClauses[] = {
         "up to whole passes of the loop.",
         "firmware; arithmetic"),
     from(kEnabled, Hazard::kMove, "J1 makes the steps of four speeds.", on<speed>),
+    variant("late", full(from(kHomed, Hazard::kMove, "A step that comes late delays the next one.",
+                              on<expect_late_steps_to_delay>))),
 
     must("parol6.jog.slow", "Speeds down to a few steps/s are kept too.",
          "firmware: intervals have 32 bits"),
