@@ -13,6 +13,7 @@ namespace armjig::kinovazed::conformance {
 [[nodiscard]] Chapter reply_chapter();
 [[nodiscard]] Chapter interrupt_chapter();
 [[nodiscard]] Chapter beat_chapter();
+[[nodiscard]] Chapter mode_chapter();
 [[nodiscard]] Chapter joystick_chapter();
 [[nodiscard]] Chapter objective_chapter();
 [[nodiscard]] Chapter arm_chapter();

@@ -56,6 +56,7 @@ Suite suite() noexcept {
       reply_chapter(),
       interrupt_chapter(),
       beat_chapter(),
+      mode_chapter(),
       joystick_chapter(),
       objective_chapter(),
       arm_chapter(),

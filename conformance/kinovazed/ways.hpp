@@ -13,6 +13,13 @@ namespace armjig::kinovazed::conformance {
 
 /// A target so far away from the ready pose that the fastest arm needs more than a second.
 inline constexpr auto kFarObjective = "RunObjective:SuckDoor";
+/// A deflection of nothing.
+inline constexpr auto kStop = "MoveJoystick:0:0:0";
+/// Modes in which the joystick moves something.
+inline constexpr char kXyz[] = "XYZ";
+inline constexpr char kRotation[] = "Rotation";
+inline constexpr char kAxis1to3[] = "Axis1to3";
+inline constexpr char kAxis4to6[] = "Axis4to6";
 /// The beat that shows a state of less than a second comes that long behind the command.
 inline constexpr Duration kBeforeBeat = std::chrono::milliseconds{420};
 
