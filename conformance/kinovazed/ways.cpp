@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/kinovazed/ways.hpp"
 
+#include "conformance/kinovazed/wording.hpp"
+
 namespace armjig::kinovazed::conformance {
 
 void switch_off(ServerBench& server) {

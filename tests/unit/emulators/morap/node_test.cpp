@@ -16,7 +16,6 @@
 namespace armjig::morap::emulation {
 namespace {
 
-using armjig::test::as_vector;
 using armjig::test::hex;
 using armjig::test::same_bytes;
 using test::Desk;
