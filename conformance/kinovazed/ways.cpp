@@ -55,7 +55,9 @@ void expect_next_served(ServerBench& server, void (*end)(ServerBench& server)) {
   say_while_waiting(server, "EStop");
   server.as(0);
   (void)server.await_beat();
-  const auto begin = server.now();
+  server.as(1);
+  const auto begin = server.now();  // by the clock of the connection that waits
+  server.as(0);
   end(server);
   server.as(1);
   server.about("the client that waited, from the end of the first on");

@@ -96,6 +96,9 @@ def check_restart(armjig, path):
         assert alone[case] == "skipped" and set(alone.values()) == {"skipped"}, alone
         verdicts, out = folder.verdicts("kinovazed", target, case, "--restart", restart)
         assert verdicts.keys() == alone.keys() and set(verdicts.values()) == {"pass"}, out
+        # Each connection has a clock of its own.
+        verdicts, out = folder.verdicts("kinovazed", target, "kinovazed.connection.half-close")
+        assert verdicts and set(verdicts.values()) == {"pass"}, out
         start = "kinovazed.state.start"
         verdicts, out = folder.verdicts("kinovazed", target, start, "--restart", restart)
         assert verdicts[start] == "pass", out
