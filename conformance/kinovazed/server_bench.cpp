@@ -139,12 +139,15 @@ bool ServerBench::connect_again(Duration patience) {
   is_seen_stopped_ = false;
   const auto deadline = one.port->now() + patience;
   for (;;) {
-    const auto connected = one.port->connect(one.port->now() + answer_time());
+    const auto asked = one.port->now();
+    const auto connected = one.port->connect(asked + answer_time());
     one.is_connected = connected.has_value();
+    opened_.latest = one.port->now();
     if (connected) {
       is_missed_ = false;
       return true;
     }
+    opened_.earliest = asked;
     if (one.port->now() >= deadline) return false;
     port().pause(100ms);
   }
@@ -523,6 +526,7 @@ void ServerBench::measure_noise() {
 }
 
 void ServerBench::restart() {
+  opened_.earliest = now();
   const bool has_hand = reach("restart", 1);
   if (!has_hand && start_ == kFresh) return skip("needs somebody who can start the server anew");
   port().pause(100ms);

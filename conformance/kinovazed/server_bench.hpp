@@ -75,6 +75,12 @@ class ServerBench final : public PortBench<SessionSource> {
   void leave();           ///< closes both directions
   void finish_sending();  ///< and still reads
   void throw_away();      ///< resets
+  /// When a server that a case found fresh opened its port.
+  struct Opening {
+    Instant earliest;
+    Instant latest;
+  };
+  [[nodiscard]] Opening opened() const noexcept { return opened_; }
   /// The server closes or resets the connection, now.
   void expect_end();
   /// It closes it, as who has read all that came.
@@ -205,6 +211,7 @@ class ServerBench final : public PortBench<SessionSource> {
   std::deque<Passed> exchange_;
   std::optional<Instant> mode_said_;
   Start start_ = kStopped;
+  Opening opened_{};  ///< between what shows that it was not open yet, and that it is
   bool is_spoiled_ = false;
   bool is_missed_ = false;                                 ///< the server did not come back
   std::map<std::string, std::int64_t, std::less<>> left_;  ///< inputs to put back after the case

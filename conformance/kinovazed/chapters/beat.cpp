@@ -50,6 +50,15 @@ void expect_beats_in_flood(ServerBench& server) {
   }
 }
 
+/// A server is asked every 100 ms until it is there, so that it is known to that when it opened.
+void expect_first_beat(ServerBench& server) {
+  const auto [earliest, latest] = server.opened();
+  const auto first = server.await_beat().time;
+  server.about("the first beat, after the server opened its port");
+  expect_time(server, first - earliest, kBeatPeriod - 15ms - server.noise(),
+              kBeatPeriod + (latest - earliest) + 40ms + server.noise());
+}
+
 constexpr Clause kBeatClauses[] = {
     must("kinovazed.beat.period", "The next heartbeat comes 1 s after the one before.",
          "server, recording heartbeat-period"),
@@ -67,6 +76,10 @@ constexpr Clause kBeatClauses[] = {
          expect_time(server, periods[2], kBeatPeriod - 15ms - server.noise(),
                      kBeatPeriod + 40ms + server.noise());
        }),
+
+    must("kinovazed.beat.first", "The first heartbeat comes 1 s after the server opened its port.",
+         "server; reference 7"),
+    from(kFresh, Hazard::kObserve, "Of a server that was just started.", on<expect_first_beat>),
 
     must("kinovazed.beat.single", "There is one heartbeat in each second, and no other.",
          "server, recording heartbeat-period"),
