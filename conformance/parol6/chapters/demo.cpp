@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <span>
+#include <vector>
+
 #include "conformance/parol6/cases.hpp"
 
 namespace armjig::parol6::conformance {
@@ -8,23 +12,55 @@ namespace {
 /// 15.2 s, and more on a board with a long loop.
 constexpr Duration kLeg = 40s;
 
-/// Asks until an answer takes more than a second, for the board sleeps between its legs. That is
-/// how long it took; the answer is the first one behind it.
+/// Answers until one takes more than a second, for the board sleeps between its legs; the first leg
+/// ends with that one.
 struct Sleep {
-  Answer after;
+  std::vector<Answer> leg;
+  Answer after;  ///< the next one
   Duration length{};
 };
 
 Sleep run_out(BoardBench& board) {
+  Sleep sleep;
   const auto end = board.now() + kLeg;
   while (!board.is_over() && !board.error() && board.now() < end) {
-    const auto answer = board.ask(with_code(kDemo), 3s);
-    const auto length = answer.received - answer.asked;
-    if (length > 1s) return {board.ask(with_code(kDemo)), length};
+    const auto answer = sleep.leg.emplace_back(board.ask(with_code(kDemo), 3s));
+    sleep.length = answer.received - answer.asked;
+    if (sleep.length > 1s) {
+      sleep.after = board.ask(with_code(kDemo));
+      return sleep;
+    }
     board.pause(kFramePeriod);
   }
   board.fail("a sleep at the end of the first leg", "none within 40 s");
   return {};
+}
+
+/// Of counts that are alike modulo 65536 the one next to what was reckoned.
+double unwrapped(int timing, double reckoned) {
+  constexpr double kTurn = 65'536;
+  return timing + kTurn * std::round((reckoned - timing) / kTurn);
+}
+
+/// How fast the board's timer runs by our clock is told by the leg before the sleep.
+void expect_timer_to_run_on(BoardBench& board, std::span<const Answer> leg) {
+  if (leg.size() < 3) return;
+  const auto ours = [](const Answer& from, const Answer& to) {
+    return ticks_in(to.received - from.received);
+  };
+  const auto awake = leg.first(leg.size() - 1);
+  double counted = 0;
+  for (std::size_t i = 1; i < awake.size(); ++i) {
+    counted += unwrapped(awake[i].timing, ours(awake[i - 1], awake[i]));
+  }
+  const double rate = counted / ours(awake.front(), awake.back());
+  const double reckoned = rate * ours(awake.back(), leg.back());
+  const double slept = unwrapped(leg.back().timing, reckoned);
+  const double late = ticks_in(15ms);
+  board.about("the timing of the answer after the sleep, modulo 65536");
+  board.expect_in_time({slept, reckoned - late, reckoned + late, "ticks"},
+                       fmt::format("about {:.0f} ticks", reckoned),
+                       fmt::format("timing {}", leg.back().timing));
 }
 
 Answer run_back(BoardBench& board) {
@@ -187,15 +223,16 @@ constexpr Clause kDemoClauses[] = {
 
     must("parol6.demo.sleeps",
          "Between its two legs the board sleeps for 2 s, and answers afterwards what came "
-         "meanwhile.",
+         "meanwhile; its timer runs on.",
          "firmware", Profiles::kFirmware),
     full(from(kHomed, Hazard::kMove, "One answer between the legs takes 2 s.",
               [](BoardBench& board) {
                 board.spoil_memory();
-                const auto length = run_out(board).length;
-                board.expect_in_time({milliseconds(length), 1900, 2100, "ms"},
+                const auto sleep = run_out(board);
+                board.expect_in_time({milliseconds(sleep.length), 1900, 2100, "ms"},
                                      "one answer after 2 s",
-                                     fmt::format("it took {} ms", length / 1ms));
+                                     fmt::format("it took {} ms", sleep.length / 1ms));
+                expect_timer_to_run_on(board, sleep.leg);
                 run_back(board);
               })),
 
