@@ -270,7 +270,8 @@ constexpr Clause kLoopClauses[] = {
 
     variant("slowly", slowly([](NodeBench& node) {
               auto set = proportional(node.loop_rate(), 1.0F, ControllerKind::kSpeed);
-              set.d = filter({0.001F});  // 0.375 V, had the shaft come here within a tick
+              // 0.375 V each, had the shaft come here within a tick, or been as fast as it is far.
+              set.d = filter({0.005F, 0.005F, 0.005F, 0.001F});
               node.send(set);
               node.send(kCalibrateAngle, kFar);
               node.tick();

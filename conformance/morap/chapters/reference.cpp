@@ -4,25 +4,31 @@
 namespace armjig::morap::conformance {
 namespace {
 
-template <CommandId between, auto... number>
-void kept_over(NodeBench& node) {
+/// Both references are as they were written, whatever was done since.
+template <class Act>
+void expect_both_kept(NodeBench& node, Act act) {
   node.send(kPosition, 0.25F);
   node.send(kSpeed, 0.75F);
-  node.send(kDisable);  // nothing shall run, whatever comes
-  node.send(between, number...);
+  act();
   node.expect_number(kReadPositionReference, 0.25F);
   node.expect_number(kReadSpeedReference, 0.75F);
 }
 
+template <CommandId between, auto... number>
+void kept_over(NodeBench& node) {
+  expect_both_kept(node, [&node] {
+    node.send(kDisable);  // nothing shall run, whatever comes
+    node.send(between, number...);
+  });
+}
+
 template <CommandId... between>
 void kept_beside(NodeBench& node) {
-  node.send(kPosition, 0.25F);
-  node.send(kSpeed, 0.75F);
   constexpr float kLittle = 0.5F;  // V, or N m
-  (node.send(between, kLittle), ...);
-  node.send(kCalibrationUnknown);  // it ends what was started
-  node.expect_number(kReadPositionReference, 0.25F);
-  node.expect_number(kReadSpeedReference, 0.75F);
+  expect_both_kept(node, [&node] {
+    (node.send(between, kLittle), ...);
+    node.send(kCalibrationUnknown);  // it ends what was started
+  });
 }
 
 /// A real shaft turns by itself a little.

@@ -50,6 +50,26 @@ void does_nothing_when_enabled(NodeBench& node) {
   node.send(kDisable);
 }
 
+/// As commands have one, which sets an angle, a reference or a voltage.
+template <CommandId... ids>
+void ignores_numbers(NodeBench& node) {
+  constexpr float kNumber = 1.5F;
+  constexpr float kReference = 0.25F;
+  constexpr double kLittle = 0.1;  // rad, of a shaft that nothing drives
+  node.send(kPosition, kReference);
+  node.send(kSpeed, kReference);
+  node.send(kDisable);
+  node.send(kCalibrateZero);
+  for (const auto id : {ids...}) {
+    node.about(fmt::format("{} and a number after identifier {}", kNumber, static_cast<int>(id)));
+    node.send(id, kNumber);
+    node.expect_near(kReadAngle, 0.0, kLittle);
+    node.expect_number(kReadPositionReference, kReference);
+    node.expect_number(kReadSpeedReference, kReference);
+    node.expect_status(MotorStatus::kDisabled);
+  }
+}
+
 constexpr Case state(std::string_view rule, CaseBody run, Start start) {
   return from(start, start == kProgrammable ? Hazard::kProgram : Hazard::kState, rule, run);
 }
@@ -342,6 +362,11 @@ constexpr Clause kStatusClauses[] = {
 
     must("morap.ids.led-toggle", "Identifier 254 does nothing.", "firmware"),
     state("0 V, then 254.", on<does_nothing_when_enabled<kLedToggle>>, kCalibrated),
+
+    must("morap.ids.no-number", "Nor do these do anything with a number after them.", "firmware"),
+    state("7, 14, 15 and 252 to 254 with 1.5.",
+          on<ignores_numbers<kTrajectory, kBrake15, kBrake14, kLedOn, kLedOff, kLedToggle>>,
+          kCalibrated),
 
     must("morap.ids.all-bits", "All eight bits of an identifier count.",
          "arithmetic; recording static-unknown-ids"),
