@@ -75,6 +75,22 @@ constexpr Clause kFrameClauses[] = {
                             board.expect_answer();
                           })),
 
+    variant("behind-another", look("A frame is answered whose beginning, cut at each byte in turn, "
+                                   "came together with the one before.",
+                                   [](BoardBench& board) {
+                                     const auto frame = encode(idle());
+                                     for (std::size_t split = 1; split < frame.size(); ++split) {
+                                       std::vector<std::byte> more{frame.begin(), frame.end()};
+                                       const auto beginning = std::span{frame}.first(split);
+                                       more.insert(more.end(), beginning.begin(), beginning.end());
+                                       board.about(
+                                           fmt::format("a frame and {} bytes of another", split));
+                                       board.expect_answer(more);
+                                       board.pause(2ms);
+                                       board.expect_answer(std::span{frame}.subspan(split));
+                                     }
+                                   })),
+
     must("parol6.frame.burst", "Frames that arrive together are all answered, in order.",
          "firmware: all waiting bytes are read in one pass"),
     look("Three frames in one write get three answers.",

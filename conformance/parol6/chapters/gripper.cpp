@@ -88,6 +88,21 @@ constexpr Clause kGripperClauses[] = {
         },
         kFull),
 
+    variant("cut-off",
+            grip(
+                "What it answers is cut off: from both sides it is one less somewhere.",
+                [](BoardBench& board) {
+                  prepare(board, 0);
+                  int less = 0;
+                  for (const int place : {40, 90, 150, 210, 240, 190, 130, 80, 50, 20}) {
+                    const auto there = board.keep_asking(with_gripper(to(place, 120)), 1s);
+                    less += there.gripper.position == place - 1 ? 1 : 0;
+                  }
+                  board.expect_true(less > 0, "one less than was asked for at one of ten",
+                                    "what was asked for or more at all");
+                },
+                kFull)),
+
     must("parol6.gripper.status-bits",
          "The status shows activated, go-to and calibrated in bits 80, 40 and 01.",
          "gripper, passed through by the firmware"),
@@ -223,6 +238,17 @@ constexpr Clause kGripperClauses[] = {
                           board.expect_bits(hold(board, 300), "gripper.status", 0x30, 0x20);
                         },
                         kFull)),
+
+    variant("no-current", grip(
+                              "Fingers that may not use any current stand, and meet nothing.",
+                              [](BoardBench& board) {
+                                prepare(board, 0);
+                                const auto weak = with_gripper(to(200, 60, 0));
+                                board.about("a set-point with a current of 0");
+                                board.expect_bits(board.keep_asking(weak, 500ms), "gripper.status",
+                                                  0x30, 0);
+                              },
+                              kFull)),
 
     must("parol6.gripper.stop",
          "The stop flag stops the gripper and latches the stop error in status bit 02.", "gripper"),

@@ -61,6 +61,26 @@ void expect_late_steps_to_delay(BoardBench& board) {
   if (share < kShareOfLongPass) expect_late(slowest_share(board, kLong));
 }
 
+/// Steps/s of J6, there and back.
+double pace(BoardBench& board, int speed) {
+  const auto stretch = run(board, jog(kJ6, speed), 500ms);
+  board.keep_asking(jog(kJ6, -speed), 500ms);
+  board.act(idle());
+  const std::chrono::duration<double> time = stretch.after.received - stretch.before.received;
+  return steps(stretch, kJ6) / time.count();
+}
+
+/// Two speeds with intervals of 100 and 100.6 us, and of 250 and 250.6: whole passes of many loops.
+void expect_intervals_cut(BoardBench& board) {
+  constexpr double kAlike = 4;  // percent; rounded, it is 10 and more with passes of 10 us and more
+  for (const auto& [whole, more] : {std::pair{10'000, 9940}, {4000, 3990}}) {
+    const double less = 100 * (1 - pace(board, more) / pace(board, whole));
+    board.about(fmt::format("jogs of j6 at {} and {} steps/s", whole, more));
+    board.expect_in_time({less, -kAlike, kAlike, "%"}, "the same pace of both",
+                         fmt::format("{:.1f} % less of the second", less));
+  }
+}
+
 /// The speed that is reported, and the steps that are made.
 void expect_clamped(BoardBench& board, std::size_t joint, int speed, int most) {
   board.about(fmt::format("a jog of j{} at {} steps/s", joint + 1, speed));
@@ -119,6 +139,10 @@ constexpr Clause kJogClauses[] = {
     from(kEnabled, Hazard::kMove, "J1 makes the steps of four speeds.", on<speed>),
     variant("late", full(from(kHomed, Hazard::kMove, "A step that comes late delays the next one.",
                               on<expect_late_steps_to_delay>))),
+
+    variant("cut", full(from(kHomed, Hazard::kMove,
+                             "Intervals that are the same in whole microseconds are the same.",
+                             on<expect_intervals_cut>))),
 
     must("parol6.jog.slow", "Speeds down to a few steps/s are kept too.",
          "firmware: intervals have 32 bits"),

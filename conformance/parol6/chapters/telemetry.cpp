@@ -124,6 +124,10 @@ constexpr Clause kTelemetryClauses[] = {
          [](BoardBench& board) {
            board.expect_bits(board.ask(idle()), "temperature_error", 0xFC, 0);
          }),
+    variant("homed", from(kHomed, Hazard::kState, "Nor do those of a homed board.",
+                          [](BoardBench& board) {
+                            board.expect_bits(board.ask(idle()), "temperature_error", 0xFC, 0);
+                          })),
 
     must("parol6.telemetry.no-position-error", "No joint ever reports a position error.",
          "firmware: never set", Profiles::kFirmware, "parol6.telemetry.position-error"),
@@ -131,6 +135,10 @@ constexpr Clause kTelemetryClauses[] = {
                          [](BoardBench& board) {
                            board.expect_bits(board.ask(idle()), "position_error", 0xFC, 0);
                          })),
+    variant("homed", from(kHomed, Hazard::kState, "All position errors of a homed one are 0.",
+                          [](BoardBench& board) {
+                            board.expect_bits(board.ask(idle()), "position_error", 0xFC, 0);
+                          })),
     variant("outside", from(kHomed, Hazard::kMove, "J5 beyond its range is no error.",
                             [](BoardBench& board) {
                               board.expect_bits(beyond_range(board), "position_error", 0xFC, 0);
