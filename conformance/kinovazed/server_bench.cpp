@@ -311,6 +311,18 @@ void ServerBench::refuse(std::string_view command) {
   expect(Event::kRejected);
 }
 
+void ServerBench::refuse_until(std::string_view command, Event event) {
+  for (const auto end = now() + kMotionTime; now() < end;) {
+    say(command);
+    const auto word = next_word(answer_time());
+    if (!word) return fail_by_no_line(in_context(to_string(Event::kRejected)), answer_time());
+    if (word->is(event)) return (void)expect(Event::kRejected);
+    if (!word->is(Event::kRejected)) return fail_by(to_string(event), *word);
+    pause(1ms);
+  }
+  fail(in_context(to_string(event)), "Rejected, and nothing else");
+}
+
 void ServerBench::accept(std::string_view command) {
   about(std::string{command});
   say(command);

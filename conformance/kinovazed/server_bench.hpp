@@ -103,6 +103,9 @@ class ServerBench final : public PortBench<SessionSource> {
   /// Nothing but beats for as long as an answer may take.
   void expect_silence();
   void refuse(std::string_view command);
+  /// Says such a command each millisecond, as long as a motion may take, until the event of an
+  /// earlier one comes.
+  void refuse_until(std::string_view command, Event event);
   /// Commands without an event of their own, and in profile firmware all, are `Accepted`. In
   /// profile documented the others may be.
   void accept(std::string_view command);

@@ -88,6 +88,44 @@ void refused_until(ServerBench& server) {
   }
 }
 
+/// What is accepted after refused commands, and what becomes of it.
+struct Next {
+  std::string_view command;
+  std::optional<Event> event;  ///< none: only the answer
+  State state;
+};
+constexpr Next kQuit{"QuitEStop", {}, kPoweredOff};
+constexpr Next kInitialized{"Initialize", Event::kInitialized, kIdle};
+constexpr Next kFolding{"Retract", Event::kRetracted, kRetracted};
+constexpr Next kUnfolded{"Unfold", Event::kUnfolded, kIdle};
+constexpr Next kStanding{kStop, {}, kSteering};
+constexpr Next kThawed{"Unfreeze", Event::kUnfreezed, kIdle};
+
+void expect_only(ServerBench& server, const Next& next) {
+  if (next.event) {
+    server.perform(next.command, *next.event);
+  } else {
+    server.accept(next.command);
+  }
+  server.about(fmt::format("after refused commands and {}", next.command));
+  server.expect_quiet(1500ms);
+  server.expect_beat(beat_of(next.state).flags);
+}
+
+template <State state, const auto& commands, const Next& next>
+void leaves_nothing(ServerBench& server) {
+  enter(server, state);
+  refuse_all(server, commands);
+  if (state == kRetracting) server.expect(Event::kRetracted, ServerBench::kMotionTime);
+  expect_only(server, next);
+}
+
+void expect_event_while_asked(ServerBench& server, std::string_view command, Event event) {
+  server.accept(command);
+  server.about(fmt::format("after {}, with refused commands all the time", command));
+  server.refuse_until("QuitEStop", event);
+}
+
 /// The arm may be there already.
 void initialize(ServerBench& server) {
   server.perform("Initialize", Event::kInitialized);
@@ -170,6 +208,46 @@ constexpr Clause kStateClauses[] = {
          }
          server.expect_beat(3);
        }),
+
+    must("kinovazed.state.refused-leaves-nothing",
+         "What was refused is not made up for with a command that is accepted later.",
+         "server; reference 6.2"),
+    variant("stopped", in(kEmergencyStopped, "Seven commands, then QuitEStop.",
+                          on<leaves_nothing<kEmergencyStopped, kAllButStops, kQuit>>)),
+    variant("off", in(kPoweredOff, "Seven, then Initialize.",
+                      on<leaves_nothing<kPoweredOff, kAllButInitialize, kInitialized>>)),
+    variant("idle",
+            in(kIdle, "Four, then Retract.", on<leaves_nothing<kIdle, kNotInIdle, kFolding>>)),
+    variant("retracting", in(kRetracting, "Nine on the way, then Unfold.",
+                             on<leaves_nothing<kRetracting, kAllButEStop, kUnfolded>>)),
+    variant("retracted", in(kRetracted, "Seven, then Unfold.",
+                            on<leaves_nothing<kRetracted, kNotInRetracted, kUnfolded>>)),
+    variant("steering", in(kSteering, "Five, then MoveJoystick.",
+                           on<leaves_nothing<kSteering, kNotInSteering, kStanding>>)),
+    variant("frozen", in(kFrozen, "Seven, then Unfreeze.",
+                         on<leaves_nothing<kFrozen, kNotInFrozen, kThawed>>)),
+
+    must("kinovazed.state.event-while-asked",
+         "The event of a command comes, however often its client asks for something meanwhile.",
+         "server; reference 6.3"),
+    variant("retracted", in(kIdle, "Retract.",
+                            [](ServerBench& server) {
+                              expect_event_while_asked(server, "Retract", Event::kRetracted);
+                            })),
+    variant("unfolded", in(kRetracted, "Unfold.",
+                           [](ServerBench& server) {
+                             expect_event_while_asked(server, "Unfold", Event::kUnfolded);
+                           })),
+    variant("mode", in(kIdle, "A mode.",
+                       [](ServerBench& server) {
+                         expect_event_while_asked(server, "SetJoystickMode:XYZ",
+                                                  Event::kJoystickModeSet);
+                       })),
+    variant("objective", in(kIdle, "An objective.",
+                            [](ServerBench& server) {
+                              expect_event_while_asked(server, kFarObjective,
+                                                       Event::kObjectiveDone);
+                            })),
 
     must("kinovazed.state.stopped.estop", "In emergencyStopped EStop stays there.",
          "server, state-command-matrix"),
