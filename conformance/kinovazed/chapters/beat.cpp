@@ -206,15 +206,19 @@ constexpr Clause kBeatClauses[] = {
        }),
 
     must("kinovazed.beat.lost-arm",
-         "While the arm is lost no heartbeat comes, and never one without bit 0.",
+         "While the arm is lost no heartbeat comes, never one without bit 0, and afterwards none "
+         "that is made up for.",
          "server, recording fault-outage-idle", Profiles::kFirmware,
          "kinovazed.beat.shows-lost-arm"),
-    in(kIdle, "No beat for 2.5 s, then 3.",
+    in(kIdle, "No beat for 2.5 s, then one at a time, of 3.",
        [](ServerBench& server) {
          lose_arm(server);
          server.about("while the arm is lost");
          server.expect_no_message(2500ms);
          find_arm(server);
+         server.about("once the arm is back");
+         const auto beats = server.count_beats(900ms);
+         server.expect_true(beats <= 1, "one beat at most within 0.9 s", std::to_string(beats));
          server.expect_beat(3);
        }),
 
