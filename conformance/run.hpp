@@ -28,8 +28,8 @@ struct RunOptions {
   /// How long in all this process did not run although it should have; nobody asks if empty. A case
   /// that did not pass while that grew is started again.
   std::function<Duration()> missed{};
-  /// Whether more wants to run on this machine than it has processors for, so that a moment may be
-  /// missed twice without anybody's fault. Never if empty.
+  /// Whether more wants to run on this machine than it has processors for, so that anything may
+  /// fail once, and a moment be missed twice, without anybody's fault. Never if empty.
   std::function<bool()> is_busy{};
   /// Opens an emulated device that obeys, on a link of the same kind as the target's, to tell what
   /// comes from link and machine. What it gives is none if that cannot be had. Empty: the link adds

@@ -96,10 +96,21 @@ Answer BoardBench::ask(const CommandFrame& frame, Duration within) {
   last_answered_ = now();
   if (!answer) {
     fail_to_understand();
+    fail_if_late(asked, within);
     fail_by_silence(in_context("an answer"),
                     fmt::format("none within {:.0f} ms", milliseconds(within)));
   }
   return answer.value_or(Answer{});
+}
+
+/// An answer that comes after all is a matter of time, as on a link that was held up.
+void BoardBench::fail_if_late(Instant asked, Duration within) {
+  constexpr Duration kLate = 2s;
+  const auto answer = next_answer(asked, kLate);
+  if (!answer) return;
+  const auto time = milliseconds(answer->received - asked);
+  expect_in_time({time, 0, milliseconds(within), "ms"}, "an answer",
+                 fmt::format("one after {:.0f} ms", time));
 }
 
 /// A finding if something came that is no answer.
@@ -136,10 +147,12 @@ Answer BoardBench::keep_asking(const CommandFrame& frame, Duration time) {
 }
 
 Answer BoardBench::expect_answer() {
+  const auto asked = now();
   not_understood_.clear();
-  const auto answer = next_answer(now(), answer_time());
+  const auto answer = next_answer(asked, answer_time());
   if (!answer) {
     fail_to_understand();
+    fail_if_late(asked, answer_time());
     fail(in_context("an answer"),
          fmt::format("none within {:.0f} ms", milliseconds(answer_time())));
   }

@@ -135,6 +135,7 @@ class BoardBench final : public StreamBench {
   void power_cycle();
   void put_back_surroundings();
   void fail_to_understand();
+  void fail_if_late(Instant asked, Duration within);
   Answer say_enable();
   void enable();
   void walk_back();

@@ -64,6 +64,18 @@ void begins_again_in_another_mode(NodeBench& node) {
   node.expect_levels_at_ticks({4, 8});
 }
 
+/// Also without any other between: what the loop of positions had summed is not that of speeds.
+void begins_again_at_once_in_another_mode(NodeBench& node) {
+  auto set = blind_set(node, {0.0F}, {0.0F}, 0.0025F);
+  set.kind = ControllerKind::kSpeed;
+  node.send(set);
+  node.tick();
+  run_integrator(node);
+  node.expect_levels_at_ticks({4, 8});
+  node.send(kSpeed, kFar);
+  node.expect_levels_at_ticks({12, 4, 8});
+}
+
 /// What a limit holds back is held back of the same loop only.
 void begins_again_after_a_limit(NodeBench& node) {
   constexpr float kTooFar = 1000.0F;
@@ -170,6 +182,7 @@ constexpr Clause kLoopModeClauses[] = {
     loop("An integrator, with a voltage between.", on<begins_again_in_another_mode>),
     variant("slowly", slowly(on<begins_again_in_another_mode>)),
 
+    variant("slowly.at-once", slowly(on<begins_again_at_once_in_another_mode>)),
     variant("slowly.disabled", slowly(on<begins_again_once_disabled>)),
     variant("limited", loop("One that was limited.", on<begins_again_after_a_limit>)),
     variant("slowly.limited", slowly(on<begins_again_after_a_limit>)),

@@ -253,6 +253,16 @@ constexpr Clause kCommandClauses[] = {
            board.act(with_code(kEnable));
          }),
 
+    variant("after-home",
+            from(kEnabled, Hazard::kHome, "Also after a home command, which is ignored.",
+                 [](BoardBench& board) {
+                   board.act(with_code(kDisable));
+                   board.act(with_code(kHome));
+                   board.act(with_speeds(255, {7, -8, 9, -10, 11, -12}));
+                   expect_reported(board, board.ask(with_code(kDisable)), {7, -8, 9, -10, 11, -12});
+                   board.act(with_code(kEnable));
+                 })),
+
     must("parol6.command.disabled-for-good",
          "The board stays disabled, whatever comes, until it is enabled.", "firmware"),
     from(kEnabled, Hazard::kMove, "Six codes after disable do not enable.",

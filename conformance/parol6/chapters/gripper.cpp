@@ -18,6 +18,26 @@ void expect_asleep(BoardBench& board, std::uint8_t command) {
   expect_stands(board, set_point);
 }
 
+/// An end counts for the gripper with currents of 410 to 590 mA.
+void expect_pressing_calibration(BoardBench& board) {
+  prepare(board, 100);
+  board.act(with_gripper({.mode = gripper_mode::kCalibrate}));
+  board.act(idle());
+  int least = 0;
+  int most = 0;
+  const auto is_over = [&](const Answer& answer) {
+    least = std::min<int>(least, answer.gripper.current.value);
+    most = std::max<int>(most, answer.gripper.current.value);
+    return is_calibrated(answer);
+  };
+  board.about("a calibration");
+  board.expect_true(board.ask_until(idle(), is_over, 35s).has_value(),
+                    "gripper.status with bit 01 within 35 s", "never");
+  board.expect_true(most >= 410 && most <= 590 && least <= -410 && least >= -590,
+                    "gripper.current of 410 to 590 mA at the one end, and negative at the other",
+                    fmt::format("from {} to {} mA", least, most));
+}
+
 /// Ends a calibration when it is on its way to the closed end, and begins another one.
 void calibrate_twice(BoardBench& board) {
   constexpr int kClosing = 120;
@@ -151,6 +171,9 @@ constexpr Clause kGripperClauses[] = {
                                        before);
                         },
                         kFull)),
+
+    variant("presses", grip("It presses against both ends with about 500 mA, which are shown.",
+                            on<expect_pressing_calibration>, kFull)),
 
     must("parol6.gripper.calibrates-anew",
          "A calibration opens the gripper first, also after one that was ended when it closed.",

@@ -4,6 +4,8 @@
 namespace armjig::parol6::conformance {
 namespace {
 
+constexpr std::array kBaseJoints{kJ1, kJ2, kJ3};
+
 HomingRecord record(BoardBench& board) {
   const auto& log = board.homing_log();
   expect_seen(board, log, "the run of homing");
@@ -166,6 +168,14 @@ constexpr Clause kHomeRunClauses[] = {
     /// From power-up, so that a board that never gets there fails this and not all that needs it.
     variant("at-all",
             full(from(kEnabled, Hazard::kHome, "A board homes within 90 s.", on<home_by_idling>))),
+
+    variant("echo", from(kHomed, Hazard::kObserve, "The idle frames were echoed as what they are.",
+                         [](BoardBench& board) {
+                           for (const auto& answer : board.homing_log()) {
+                             board.about("an idle frame while the arm homes");
+                             board.expect(answer, "echo", static_cast<int>(kIdle));
+                           }
+                         })),
 
     must("parol6.home.order",
          "J1 to J3 home together, then J4, then J6 parks, then J5 homes while J6 returns.",
@@ -333,6 +343,24 @@ constexpr Clause kHomeRunClauses[] = {
                if (!waits) continue;
                board.about("a joint that waits for the others");
                board.expect(answer, position_field(joint), 0);
+             }
+           }
+         }),
+
+    must("parol6.home.base-together",
+         "J1, J2 and J3 begin their final moves together, once the last of them has found its "
+         "switch a second time.",
+         "firmware"),
+    from(kHomed, Hazard::kObserve, "None went up while another sought for the second time.",
+         [](BoardBench& board) {
+           for (const auto& answer : record(board).with_bits(kNoneHomed)) {
+             const auto seeks = [&answer](std::size_t joint) {
+               return answer.speed[joint].value == kHoming[joint].slow_seek;
+             };
+             if (std::ranges::none_of(kBaseJoints, seeks)) continue;
+             for (const auto joint : kBaseJoints) {
+               board.about("while a joint seeks its switch for the second time");
+               board.expect_between(answer, speed_field(joint), kHoming[joint].slow_seek, 0);
              }
            }
          }),

@@ -154,6 +154,17 @@ constexpr Clause kSetPointClauses[] = {
         },
         kFull),
 
+    variant("remembered", grip(
+                              "What came in mode 7 was sent, so that what was before is a change.",
+                              [](BoardBench& board) {
+                                prepare(board, 100);
+                                board.keep_asking(with_gripper(in_mode(to(150), 7)), kWholeWay);
+                                board.about("set-points of mode 0 again after others in mode 7");
+                                const auto back = with_gripper(to(100));
+                                expect_at(board, board.keep_asking(back, kWholeWay), 100);
+                              },
+                              kFull)),
+
     must("parol6.gripper.forgotten-set-point",
          "Set-points that arrive together with a calibration or a clear-error count as sent "
          "although "

@@ -34,6 +34,7 @@ class NumberBench final : public Bench {
       missed += 1s;
       return fail("the state", "nothing");
     }
+    if (late_starts-- > 0) expect_in_time({2000, 0, 1000, "ms"}, "the state", "a late one");
     if (start != kUnreachable) return;
     leaves_beyond_open ? leave_open("no hand") : fail("the state", "another one");
   }
@@ -57,6 +58,8 @@ class NumberBench final : public Bench {
   int measured = 0;
   Duration noise_here = 3us;
   int late_answers = 0;  ///< of the next ones
+  int wrong_answers = 0;
+  int late_starts = 0;
   bool is_dead = false;
   bool has_nobody = false;  ///< who could start it again
   int revivals_left = 0;    ///< so many times one that is dead can be brought back
@@ -123,6 +126,10 @@ void races(Bench& bench) {
   device.begin_race();
   device.expect_true(device.late_answers-- <= 0, "a word", "another one");
 }
+void answers_wrong(Bench& bench) {
+  auto& device = number(bench);
+  device.expect_true(device.wrong_answers-- <= 0, "a number", "another one");
+}
 void dies(Bench& bench) {
   if (number(bench).deaths_left-- <= 0) return;
   number(bench).is_dead = true;
@@ -184,9 +191,11 @@ const Chapter kChapters[] = {{"Numbers",
 const Suite kSuite{"n", "7", kChapters, kStarts};
 
 constexpr Requirement kPrompt[] = {{"n.prompt", Level::kMust, "It is prompt.", "here"},
-                                   {"n.race", Level::kMust, "It is first.", "here"}};
+                                   {"n.race", Level::kMust, "It is first.", "here"},
+                                   {"n.right", Level::kMust, "It is right.", "here"}};
 constexpr Case kPromptCases[] = {
     {.requirement = "n.prompt", .rule = "r", .run = answers_in_time},
+    {.requirement = "n.right", .rule = "r", .run = answers_wrong},
     {.requirement = "n.race", .rule = "r", .run = races, .hazard = Hazard::kCrash}};
 const Chapter kPromptChapters[] = {{"Moments",
                                     {std::begin(kPrompt), std::end(kPrompt)},
@@ -371,6 +380,36 @@ TEST(ConformanceRun, WantsAMomentMissedAgainAndAgainOnABusyMachine) {
     EXPECT_THAT(row.actual, HasSubstr(std::to_string(times) + " times expected 0 to 500 ms"));
   }
   EXPECT_EQ(late_for(5).verdict, Verdict::kFail);
+}
+
+TEST(ConformanceRun, WantsAnyFailureAgainOnABusyMachine) {
+  const auto wrong_for = [](int times, bool is_busy) {
+    NumberBench bench;
+    bench.wrong_answers = times;
+    auto options = beside(0);
+    options.is_busy = [is_busy] { return is_busy; };
+    return run_prompt(bench, options, "n.right").rows.front();
+  };
+  EXPECT_EQ(wrong_for(1, false).verdict, Verdict::kFail);
+  const auto once = wrong_for(1, true);
+  EXPECT_EQ(once.verdict, Verdict::kInconclusive);
+  EXPECT_THAT(once.actual, HasSubstr("2 times as it should be, on a machine that has too much"));
+  EXPECT_EQ(wrong_for(4, true).verdict, Verdict::kInconclusive);
+  EXPECT_EQ(wrong_for(5, true).verdict, Verdict::kFail);
+}
+
+TEST(ConformanceRun, TriesAStartAgainThatWasLateOnce) {
+  NumberBench bench;
+  bench.late_starts = 1;
+  EXPECT_THAT(verdicts(run_prompt(bench, beside(0))), ElementsAre("n.prompt pass"));
+}
+
+TEST(ConformanceRun, AccusesADeviceWhoseStartIsLateEachTime) {
+  NumberBench bench;
+  bench.late_starts = 100;
+  const auto found = verdicts(run_prompt(bench, beside(0), "n."));
+  EXPECT_THAT(found, testing::Contains("n.start fail"));
+  EXPECT_LT(bench.visited.size(), 10U) << "not again for each case";
 }
 
 TEST(ConformanceRun, LeavesOpenWhatAnEmulatedDeviceOnSuchALinkMissesAsWell) {
