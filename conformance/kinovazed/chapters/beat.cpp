@@ -59,6 +59,24 @@ void expect_first_beat(ServerBench& server) {
               kBeatPeriod + (latest - earliest) + 40ms + server.noise());
 }
 
+/// Half a second after a beat, so that one behind the event would be too soon.
+void expect_no_beat_with_events(ServerBench& server) {
+  struct Row {
+    const char* command;
+    Event event;
+  };
+  for (const auto& [command, event] : {Row{"Freeze", Event::kFreezed},
+                                       {"Unfreeze", Event::kUnfreezed},
+                                       {"SetJoystickMode:NoMode", Event::kJoystickModeSet}}) {
+    const auto before = server.await_beat().time;
+    server.pause(500ms);
+    server.perform(command, event);
+    const auto after = server.await_beat_behind(before).time;
+    server.about(fmt::format("from one beat to the next, with {} between", to_string(event)));
+    expect_time(server, after - before, 900ms - server.noise(), 1200ms + server.noise());
+  }
+}
+
 constexpr Clause kBeatClauses[] = {
     must("kinovazed.beat.period", "The next heartbeat comes 1 s after the one before.",
          "server, recording heartbeat-period"),
@@ -94,6 +112,8 @@ constexpr Clause kBeatClauses[] = {
                             fmt::format("{} beats within 4.5 s", least < 4 ? "3 or 4" : "4"),
                             std::to_string(count));
        }),
+
+    variant("events", in(kIdle, "Nor do events bring one.", on<expect_no_beat_with_events>)),
 
     must("kinovazed.beat.values",
          "Whatever happens, a heartbeat is one of 1, 3, 5, 13, 21, 37, 69 and 133.",

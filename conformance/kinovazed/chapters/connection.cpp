@@ -35,6 +35,19 @@ constexpr Clause kConnectionClauses[] = {
                        1200ms + server.noise());
          }),
 
+    variant("unheard", look("Nor does a second without anybody to hear them.",
+                            [](ServerBench& server) {
+                              const auto before = server.await_beat();
+                              server.pause(400ms);
+                              server.leave();
+                              server.pause(1s);
+                              server.connect();
+                              const auto after = server.await_beat();
+                              server.about("the second beat, of which nobody heard the first");
+                              expect_time(server, after.time - before.time, 1850ms - server.noise(),
+                                          2250ms + 2 * server.noise());
+                            })),
+
     must("kinovazed.connection.one",
          "While a client is served another one that connects hears nothing, not even heartbeats.",
          "server, recording connection-second-waits"),

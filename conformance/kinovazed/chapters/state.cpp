@@ -190,6 +190,30 @@ void expect_standing_after_unfreeze(ServerBench& server) {
   expect_time(server, after, usual - tolerance, usual + tolerance);
 }
 
+/// How long Retract takes after Freeze and Unfreeze of an arm that was stopped while it was
+/// steered.
+Duration retracting_after_steering(ServerBench& server, std::string_view move) {
+  server.perform("SetJoystickMode:XYZ", Event::kJoystickModeSet);
+  server.accept(move);
+  server.pause(500ms);
+  server.accept("EStop");
+  server.accept("QuitEStop");
+  server.perform("Initialize", Event::kInitialized);
+  server.perform("Freeze", Event::kFreezed);
+  server.perform("Unfreeze", Event::kUnfreezed);
+  return time_until(server, "Retract", Event::kRetracted);
+}
+
+/// The arm is as ready as ever, and folds as fast.
+void expect_nothing_steered_after_freeze(ServerBench& server) {
+  const auto usual = retracting_after_steering(server, kStop);
+  server.perform("Unfold", Event::kUnfolded);
+  const auto after = retracting_after_steering(server, "MoveJoystick:0:0:30");
+  const auto tolerance = 400ms + 2 * server.noise();
+  server.about("Retract after Freeze and Unfreeze, after an EStop in steering");
+  expect_time(server, after, usual - tolerance, usual + tolerance);
+}
+
 constexpr Clause kStateClauses[] = {
     must("kinovazed.state.start", "A server that was just started is in emergencyStopped.",
          "server; reference 6.1"),
@@ -492,6 +516,8 @@ constexpr Clause kStateClauses[] = {
              })),
     variant("stands", in(kIdle, "An objective that was ended is not gone on with.",
                          on<expect_standing_after_unfreeze>)),
+    variant("after-steering", in(kIdle, "Nor does what was steered before an EStop lead on.",
+                                 on<expect_nothing_steered_after_freeze>)),
 
     must("kinovazed.state.frozen.refused",
          "In frozen all commands but EStop, Unfreeze and Freeze are Rejected and change "
