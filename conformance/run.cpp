@@ -240,10 +240,10 @@ class Run {
     return judgement.is_timing || link_ > kSlowLink;
   }
 
-  /// And on a busy machine it may have come of that.
+  /// And on a busy machine it may have come of that, as long as nothing has failed for good.
   [[nodiscard]] bool is_late(const Finding& finding) const {
     return finding.judgement.verdict == Verdict::kFail &&
-           (is_moment(finding.judgement) || is_busy());
+           (is_moment(finding.judgement) || (is_busy() && !has_failed_));
   }
 
   /// A failure counts if an emulated device on a link of the same kind does not fail, and a moment

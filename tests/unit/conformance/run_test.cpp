@@ -398,6 +398,16 @@ TEST(ConformanceRun, WantsAnyFailureAgainOnABusyMachine) {
   EXPECT_EQ(wrong_for(5, true).verdict, Verdict::kFail);
 }
 
+TEST(ConformanceRun, TriesNothingAgainOnABusyMachineOnceSomethingHasFailedForGood) {
+  NumberBench bench;
+  auto options = beside(0);
+  options.is_busy = [] { return true; };
+  bench.late_answers = 5;
+  bench.wrong_answers = 1;
+  const auto found = verdicts(run_prompt(bench, options, "n."));
+  EXPECT_THAT(found, testing::IsSupersetOf({"n.prompt fail", "n.right fail"}));
+}
+
 TEST(ConformanceRun, TriesAStartAgainThatWasLateOnce) {
   NumberBench bench;
   bench.late_starts = 1;
