@@ -5,6 +5,11 @@
 
 namespace armjig {
 
+std::string wording_of(const Judgement& judgement) {
+  if (judgement.expected.empty()) return judgement.actual;
+  return fmt::format("expected {}, got {}", judgement.expected, judgement.actual);
+}
+
 Duration Bench::noise() const noexcept {
   const auto own = longest_answer();
   const auto link = link_.value_or(Duration{});

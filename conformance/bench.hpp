@@ -34,6 +34,9 @@ struct Judgement {
   std::string margin{};      ///< what was measured nearest to a bound, and its bounds
 };
 
+/// `expected A, got B`; without the former if nothing was expected.
+[[nodiscard]] std::string wording_of(const Judgement& judgement);
+
 /// What was measured, and its bounds.
 struct InBounds {
   double value{};

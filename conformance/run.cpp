@@ -10,38 +10,18 @@
 #include <set>
 #include <utility>
 
+#include "conformance/coverage.hpp"
+#include "conformance/doubt.hpp"
 #include "harness/core/version.hpp"
 
 namespace armjig {
 namespace {
 
-/// FNV-1a, so that the random bytes of a case do not depend on which cases ran before.
-std::uint64_t seed_of(std::string_view name, std::uint64_t seed) noexcept {
-  auto hash = 0xCBF29CE484222325ULL ^ seed;
-  for (const auto letter : name) {
-    hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001B3ULL;
-  }
-  return hash;
-}
-
 /// So often a case is started on a machine that has no time for it.
 constexpr int kMostStarts = 3;
 
-/// So often a case that was late once has to be in time.
-constexpr int kTriesInTime = 2;
-
-/// So often an emulated device has to be in time where one was late twice.
-constexpr int kReferences = 3;
-
-/// Answers of an emulated device that come later than that make a link slow.
-constexpr Duration kSlowLink = std::chrono::milliseconds{20};
-
-constexpr auto kOnBusyMachine = ", on a machine that has too much to do";
-
-std::string wording_of(const Judgement& judgement) {
-  if (judgement.expected.empty()) return judgement.actual;
-  return fmt::format("expected {}, got {}", judgement.expected, judgement.actual);
-}
+/// So often a start state that may have been reached too late is tried again.
+constexpr int kLateStarts = 2;
 
 std::string in_us(Duration most) {
   return fmt::format("{} us at most", most / std::chrono::microseconds{1});
@@ -49,13 +29,6 @@ std::string in_us(Duration most) {
 
 constexpr std::string_view kStopped = "the run was interrupted";
 constexpr std::string_view kTimeIsUp = "the time of the run was up";
-
-/// What one or several runs of a case came to.
-struct Finding {
-  Judgement judgement;
-  std::string evidence;
-  Duration duration{};
-};
 
 /// One run over a suite.
 class Run {
@@ -67,7 +40,7 @@ class Run {
   Report all() {
     const auto cases = select(suite_, options_.profile, options_.selection);
     is_alive_ = check_alive("before the first case");
-    if (is_alive_) measure_noise();
+    if (is_alive_) doubt_.measure_link();
     add_facts(cases.size());
     for (const auto* one : cases) add(judge(*one));
     if (is_alive_ && !options_.must_stop()) (void)check_alive("after the last case");
@@ -78,24 +51,6 @@ class Run {
   }
 
  private:
-  void measure_noise() {
-    bench_.measure_noise();
-    if (!options_.reference) return bench_.know_link(Duration{});
-    if (const auto reference = open_reference()) {
-      reference->measure_noise();
-      bench_.know_link(reference->heard_noise());
-      link_ = reference->heard_noise();
-    }
-  }
-
-  /// None if it cannot be had, or does not answer.
-  [[nodiscard]] std::shared_ptr<Bench> open_reference() const {
-    auto reference = options_.reference();
-    if (reference == nullptr) return reference;
-    reference->begin(options_.profile, options_.seed);
-    return reference->is_alive() ? reference : nullptr;
-  }
-
   void add_facts(std::size_t selected) {
     report_.title = fmt::format("Conformance of {}", suite_.device);
     report_.facts = {
@@ -107,7 +62,9 @@ class Run {
         {"selected", fmt::format("{} cases", selected)},
         {"answers in", in_us(bench_.heard_noise())},
     };
-    if (link_) report_.facts.emplace_back("an emulated device's answers in", in_us(*link_));
+    if (const auto link = doubt_.link()) {
+      report_.facts.emplace_back("an emulated device's answers in", in_us(*link));
+    }
   }
 
   void add_missed() {
@@ -143,10 +100,10 @@ class Run {
 
   ReportRow judge(const Case& one) {
     if (auto reason = reason_not_to_run(one)) return row_of(one, {*std::move(reason)});
-    auto finding = run_repeatedly(one);
-    auto& judgement = finding.judgement;
+    auto result = run_repeatedly(one);
+    auto& judgement = result.judgement;
     if (judgement.is_silence && !bench_.error() && !may_have_died_of(one) && !gives_sign()) {
-      finding = look_into_death(one, std::move(finding));
+      result = look_into_death(one, std::move(result));
     }
     if (bench_.error()) {
       judgement = {Verdict::kError, {}, std::string{describe(bench_.error()->code)}};
@@ -162,18 +119,18 @@ class Run {
     if (judgement.verdict == Verdict::kFail || judgement.verdict == Verdict::kFlaky) {
       has_failed_ = true;
     }
-    return row_of(one, std::move(finding));
+    return row_of(one, std::move(result));
   }
 
   /// A device that has fallen silent in a case: started again, it is asked again. One that nobody
   /// can bring back may have been switched off.
-  Finding look_into_death(const Case& one, Finding finding) {
-    if (!revive(one)) return bury(one, std::move(finding));
-    const auto once = wording_of(finding.judgement);
-    finding = run_once(one, options_.profile);
-    auto& judgement = finding.judgement;
+  CaseResult look_into_death(const Case& one, CaseResult result) {
+    if (!revive(one)) return bury(one, std::move(result));
+    const auto once = wording_of(result.judgement);
+    result = run_once(one, options_.profile);
+    auto& judgement = result.judgement;
     if (judgement.is_silence && !gives_sign()) {
-      if (!revive(one)) return bury(one, std::move(finding));
+      if (!revive(one)) return bury(one, std::move(result));
       judgement.verdict = Verdict::kFail;
       judgement.actual += ", twice, and no sign of life until it is started again";
     } else if (!bench_.error()) {
@@ -182,15 +139,15 @@ class Run {
           {},
           fmt::format("once {}, and no sign of life until it was started again; then not", once)};
     }
-    return finding;
+    return result;
   }
 
-  Finding bury(const Case& one, Finding finding) {
+  CaseResult bury(const Case& one, CaseResult result) {
     is_alive_ = check_alive(fmt::format("after {}", name_of(one)));
     // One that says other things is no matter of the rig.
     const bool is_understood = bench_.judgement().verdict != Verdict::kFail;
-    if (!is_alive_ && is_understood) finding.judgement.verdict = Verdict::kError;
-    return finding;
+    if (!is_alive_ && is_understood) result.judgement.verdict = Verdict::kError;
+    return result;
   }
 
   /// What was out of reach may have been so because of that.
@@ -233,132 +190,54 @@ class Run {
     return one.hazard == Hazard::kCrash || !killer_.empty();
   }
 
-  [[nodiscard]] bool is_busy() const { return options_.is_busy && options_.is_busy(); }
-
-  /// On a link that is slow itself whatever fails may have been late.
-  [[nodiscard]] bool is_moment(const Judgement& judgement) const noexcept {
-    return judgement.is_timing || link_ > kSlowLink;
-  }
-
-  /// And on a busy machine it may have come of that, as long as nothing has failed for good.
-  [[nodiscard]] bool is_late(const Finding& finding) const {
-    return finding.judgement.verdict == Verdict::kFail &&
-           (is_moment(finding.judgement) || (is_busy() && !has_failed_));
-  }
-
-  /// A failure counts if an emulated device on a link of the same kind does not fail, and a moment
-  /// that was missed, or anything on a busy machine, only if it fails again.
-  Finding run_to_be_sure(const Case& one) {
-    auto finding = run_once(one, options_.profile);
-    if (!options_.reference || finding.judgement.verdict != Verdict::kFail) return finding;
-    if (!is_late(finding)) return doubt(one, std::move(finding), 1);
-    const bool was_moment = is_moment(finding.judgement);
-    const auto once = wording_of(finding.judgement);
-    for (int again = 0; again < kTriesInTime; ++again) {
-      finding = run_once(one, options_.profile);
-      if (bench_.error() || options_.must_stop()) return finding;
-      if (is_late(finding)) return doubt_moment(one, std::move(finding));
-      if (finding.judgement.verdict != Verdict::kPass) return finding;
-    }
-    finding.judgement.actual = fmt::format("once {}; {} times as it should be", once, kTriesInTime);
-    if (was_moment) return finding;
-    finding.judgement.verdict = Verdict::kInconclusive;
-    finding.judgement.actual += kOnBusyMachine;
-    return finding;
-  }
-
-  /// A moment that was missed twice. In a race, which chance may decide, and on a busy machine it
-  /// has to be missed again beside each emulated device that is in time.
-  Finding doubt_moment(const Case& one, Finding finding) {
-    const bool is_race = finding.judgement.is_race;
-    if (!is_race && !is_busy()) return doubt(one, std::move(finding), kReferences);
-    for (int i = 0; i < kReferences; ++i) {
-      finding = doubt(one, std::move(finding), 1);
-      if (finding.judgement.verdict != Verdict::kFail) return finding;
-      auto again = run_once(one, options_.profile);
-      if (bench_.error() || options_.must_stop()) return again;
-      if (again.judgement.verdict == Verdict::kFail) continue;
-      if (again.judgement.verdict != Verdict::kPass) return again;
-      finding.judgement = {
-          Verdict::kInconclusive,
-          {},
-          fmt::format("{} times {}; then otherwise{}", 2 + i, wording_of(finding.judgement),
-                      is_race ? ", in a race" : kOnBusyMachine)};
-      return finding;
-    }
-    return finding;
-  }
-
-  Finding doubt(const Case& one, Finding finding, int tries) {
-    say([&] { return fmt::format("{}: on an emulated device", name_of(one)); });
-    for (int i = 0; i < tries && !options_.must_stop(); ++i) {
-      const auto reference = open_reference();
-      if (reference == nullptr) return finding;
-      reference->measure_noise();
-      reference->know_link(link_);
-      reference->begin(options_.profile, options_.seed);
-      reference->bring_to(one.start);
-      reference->begin(options_.profile, seed_of(name_of(one), options_.seed));
-      one.run(*reference);
-      const auto& judgement = reference->judgement();
-      if (judgement.verdict != Verdict::kFail) continue;
-      finding.judgement = {Verdict::kInconclusive,
-                           {},
-                           fmt::format("an emulated device on such a link does not pass either: {}",
-                                       wording_of(judgement))};
-      return finding;
-    }
-    return finding;
-  }
-
-  Finding run_repeatedly(const Case& one) {
-    auto finding = run_to_be_sure(one);
-    std::map<Verdict, int> verdicts{{finding.judgement.verdict, 1}};
+  CaseResult run_repeatedly(const Case& one) {
+    auto result = doubt_.settle(one, has_failed_);
+    std::map<Verdict, int> verdicts{{result.judgement.verdict, 1}};
     for (int i = 1; i < options_.repeat && !bench_.error() && !options_.must_stop(); ++i) {
-      auto again = run_to_be_sure(one);
+      auto again = doubt_.settle(one, has_failed_);
       ++verdicts[again.judgement.verdict];
-      again.duration += finding.duration;
+      again.duration += result.duration;
       const bool shows_more = again.judgement.verdict != Verdict::kPass;
-      if (shows_more) finding = std::move(again);
+      if (shows_more) result = std::move(again);
     }
     if (verdicts.size() > 1 && verdicts.contains(Verdict::kFail)) {
-      finding.judgement.verdict = Verdict::kFlaky;
-      finding.judgement.actual +=
+      result.judgement.verdict = Verdict::kFlaky;
+      result.judgement.actual +=
           fmt::format(" (in {} of {} runs)", verdicts[Verdict::kFail], options_.repeat);
     }
-    return finding;
+    return result;
   }
 
-  Finding run_once(const Case& one, Profile profile) {
-    auto finding =
+  CaseResult run_once(const Case& one, Profile profile) {
+    auto result =
         undisturbed([&] { return start_once(one, profile); },
-                    [](const Finding& each) {
+                    [](const CaseResult& each) {
                       // What neither link nor hands can do does not depend on time.
                       return each.judgement.verdict == Verdict::kPass || each.judgement.is_left_out;
                     });
     if (is_disturbed_ && !bench_.error()) {
-      finding.judgement = {Verdict::kInconclusive,
+      result.judgement = {Verdict::kInconclusive,
                            {},
                            "this process did not run all the time, whenever it was started"};
     }
-    return finding;
+    return result;
   }
 
-  Finding start_once(const Case& one, Profile profile) {
-    Finding finding;
+  CaseResult start_once(const Case& one, Profile profile) {
+    CaseResult result;
     if (auto obstacle = bring_to_start(one, profile)) {
-      finding.judgement = *std::move(obstacle);
+      result.judgement = *std::move(obstacle);
     } else {
       if (one.hazard == Hazard::kCrash) killer_ = name_of(one);
       say([&] { return name_of(one); });
-      bench_.begin(profile, seed_of(name_of(one), options_.seed));
+      bench_.begin(profile, seed_of(one, options_.seed));
       const auto begin = bench_.now();
       one.run(bench_);
-      finding.duration = bench_.now() - begin;
-      finding.judgement = bench_.judgement();
+      result.duration = bench_.now() - begin;
+      result.judgement = bench_.judgement();
     }
-    if (finding.judgement.verdict != Verdict::kPass) finding.evidence = bench_.last_exchange();
-    return finding;
+    if (result.judgement.verdict != Verdict::kPass) result.evidence = bench_.last_exchange();
+    return result;
   }
 
   /// Why the case cannot begin. A state that was out of reach once is not tried again, unless that
@@ -375,8 +254,8 @@ class Run {
       bench_.bring_to(one.start);
       if (bench_.judgement().verdict == Verdict::kPass) return std::nullopt;
       if (missed() != before || bench_.is_stopped()) return bench_.judgement();
-      const bool may_be_late = is_moment(bench_.judgement()) || is_busy();
-      if (may_be_late && ++late_starts_[one.start] <= kTriesInTime) return bench_.judgement();
+      const bool may_be_late = doubt_.may_be_late(bench_.judgement());
+      if (may_be_late && ++late_starts_[one.start] <= kLateStarts) return bench_.judgement();
       if (!killer_.empty() && bench_.judgement().verdict != Verdict::kSkipped) {
         return skipped(fmt::format(
             "{} ended or hung the device's program, and it has not come back", killer_));
@@ -453,51 +332,10 @@ class Run {
     add(std::move(row));
   }
 
-  /// What was judged of a requirement's cases. One that broke it is enough; that it is obeyed takes
-  /// all that are within reach.
-  struct Judged {
-    bool is_within = false;
-    bool is_broken = false;
-    bool is_open = false;
-
-    void take(const ReportRow& row) noexcept {
-      const bool is_broken_here = row.verdict == Verdict::kFail || row.verdict == Verdict::kFlaky;
-      is_within = is_within || !row.is_left_out;
-      is_broken = is_broken || is_broken_here;
-      is_open = is_open || (!row.is_left_out && !is_broken_here && row.verdict != Verdict::kPass &&
-                            row.verdict != Verdict::kDeviation);
-    }
-    [[nodiscard]] bool is_judged() const noexcept { return is_broken || (is_within && !is_open); }
-  };
-
   void add_coverage() {
-    std::map<std::string_view, Judged> judged;
-    for (const auto& row : report_.rows) {
-      if (!row.requirement.empty()) judged[row.requirement].take(row);
-    }
-    auto& coverage = report_.coverage.emplace();
-    for (const auto& chapter : suite_.chapters) {
-      for (const auto& one : chapter.requirements) {
-        const bool binds = one.level == Level::kMust && one.role == Role::kDevice &&
-                           holds_in(one.profiles, options_.profile);
-        if (binds) count(judged[one.id], is_waived(one.id), coverage);
-      }
-    }
-    report_.facts.emplace_back("judged", to_text(coverage));
-    require_enough(coverage);
-  }
-
-  static void count(const Judged& judged, bool is_waived, Coverage& coverage) noexcept {
-    ++coverage.all;
-    if (judged.is_judged()) ++coverage.judged;
-    if (!judged.is_within || is_waived) return;
-    ++coverage.within;
-    if (judged.is_judged()) ++coverage.judged_within;
-  }
-
-  [[nodiscard]] bool is_waived(std::string_view requirement) const {
-    return std::ranges::find(options_.waivers, requirement, &Waiver::requirement) !=
-           options_.waivers.end();
+    report_.coverage = coverage_of(suite_, options_.profile, report_.rows, options_.waivers);
+    report_.facts.emplace_back("judged", to_text(*report_.coverage));
+    require_enough(*report_.coverage);
   }
 
   /// Where something was found, or the rig stood in the way, that is what there is to say.
@@ -560,18 +398,18 @@ class Run {
     return row;
   }
 
-  [[nodiscard]] ReportRow row_of(const Case& one, Finding finding) const {
+  [[nodiscard]] ReportRow row_of(const Case& one, CaseResult result) const {
     auto row = row_about(requirement_of(suite_, one), suite_.document);
-    row.verdict = finding.judgement.verdict;
+    row.verdict = result.judgement.verdict;
     row.name = name_of(one);
     row.summary = one.rule;
-    row.expected = std::move(finding.judgement.expected);
-    row.actual = std::move(finding.judgement.actual);
-    row.evidence = std::move(finding.evidence);
-    row.margin = std::move(finding.judgement.margin);
-    row.is_left_out = finding.judgement.is_left_out;
+    row.expected = std::move(result.judgement.expected);
+    row.actual = std::move(result.judgement.actual);
+    row.evidence = std::move(result.evidence);
+    row.margin = std::move(result.judgement.margin);
+    row.is_left_out = result.judgement.is_left_out;
     row.repeat = fmt::format("{} --filter {}", options_.command, row.name);
-    row.duration = finding.duration;
+    row.duration = result.duration;
     return row;
   }
 
@@ -585,15 +423,16 @@ class Run {
   Bench& bench_;
   const RunOptions& options_;
   const std::function<void(const ReportRow&)>& on_row_;
+  Doubt doubt_{bench_, options_,
+               [this](const Case& one) { return run_once(one, options_.profile); }};
   Report report_;
   std::map<std::uint8_t, Judgement> out_of_reach_;  ///< start states, and why
   std::map<std::uint8_t, int> late_starts_;  ///< so often they may have been reached too late
   std::set<std::uint8_t> blamed_;            ///< those with a row of their own
-  std::string killer_;            ///< the last case that ends or hangs the device's program
-  int restarts_ = 0;              ///< of cases, because this process did not run
-  Duration missed_before_{};      ///< what was found last
-  bool is_disturbed_ = false;     ///< what was found last says nothing
-  std::optional<Duration> link_;  ///< how late answers of an emulated device come on such a link
+  std::string killer_;         ///< the last case that ends or hangs the device's program
+  int restarts_ = 0;           ///< of cases, because this process did not run
+  Duration missed_before_{};   ///< what was found last
+  bool is_disturbed_ = false;  ///< what was found last says nothing
   bool is_alive_ = false;
   bool has_failed_ = false;
 };

@@ -13,6 +13,15 @@ std::string name_of(const Case& one) {
   return fmt::format("{}.{}", one.requirement, one.variant);
 }
 
+/// FNV-1a.
+std::uint64_t seed_of(const Case& one, std::uint64_t seed) {
+  auto hash = 0xCBF29CE484222325ULL ^ seed;
+  for (const auto letter : name_of(one)) {
+    hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001B3ULL;
+  }
+  return hash;
+}
+
 Chapter chapter(std::string_view title, std::span<const Clause> clauses) {
   Chapter chapter{title, {}, {}};
   for (const auto& clause : clauses) {

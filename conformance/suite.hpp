@@ -60,6 +60,9 @@ struct Case {
 /// The requirement's id, and the variant behind it: a name of its own for every case.
 [[nodiscard]] std::string name_of(const Case& one);
 
+/// The seed of a case's random bytes, which do not depend on which cases ran before.
+[[nodiscard]] std::uint64_t seed_of(const Case& one, std::uint64_t seed);
+
 /// A state of the device in which cases begin. Earlier ones of a suite are visited first, so that
 /// what takes long, such as homing, is not done again and again.
 struct StartState {

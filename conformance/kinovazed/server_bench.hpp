@@ -49,6 +49,12 @@ class ServerBench final : public PortBench<SessionSource> {
   /// Whether an arm that is in use may be stopped: who only looks must not.
   enum class MayStop : std::uint8_t { kYes, kNo };
 
+  /// When a server opened its port.
+  struct Opening {
+    Instant earliest;
+    Instant latest;
+  };
+
   explicit ServerBench(Rig<SessionSource> rig, MayStop may_stop = MayStop::kYes);
   ~ServerBench() override;
 
@@ -75,11 +81,7 @@ class ServerBench final : public PortBench<SessionSource> {
   void leave();           ///< closes both directions
   void finish_sending();  ///< and still reads
   void throw_away();      ///< resets
-  /// When a server that a case found fresh opened its port.
-  struct Opening {
-    Instant earliest;
-    Instant latest;
-  };
+  /// Of a server that a case found fresh.
   [[nodiscard]] Opening opened() const noexcept { return opened_; }
   /// The server closes or resets the connection, now.
   void expect_end();

@@ -59,7 +59,7 @@ void expect_first_beat(ServerBench& server) {
               kBeatPeriod + (latest - earliest) + 40ms + server.noise());
 }
 
-/// Half a second after a beat, so that one behind the event would be too soon.
+/// Half a second after a beat, so that one after the event would be too soon.
 void expect_no_beat_with_events(ServerBench& server) {
   struct Row {
     const char* command;

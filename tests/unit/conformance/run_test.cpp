@@ -10,78 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "tests/unit/conformance/number_bench.hpp"
+
 namespace armjig {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// A device that is a number: cases look at it, start states set it.
-class NumberBench final : public Bench {
- public:
-  bool is_alive() override {
-    if (is_gibberish) fail("a number", "a letter");
-    return !is_dead && !is_gibberish;
-  }
-  bool can_restart() override { return !has_nobody; }
-  bool revive() override {
-    if (revivals_left-- <= 0) return false;
-    is_dead = false;
-    return true;
-  }
-  void bring_to(std::size_t start) override {
-    visited.push_back(start);
-    if (stops_in_start-- > 0) {
-      missed += 1s;
-      return fail("the state", "nothing");
-    }
-    if (late_starts-- > 0) expect_in_time({2000, 0, 1000, "ms"}, "the state", "a late one");
-    if (start != kUnreachable) return;
-    leaves_beyond_open ? leave_open("no hand") : fail("the state", "another one");
-  }
-  void measure_noise() override {
-    ++measured;
-    hear_noise(noise_here);
-  }
-  [[nodiscard]] Duration longest_answer() const noexcept override { return 500ms; }
-  [[nodiscard]] bool is_stopped() override { return is_stopped_now; }
-  void resume() override { is_stopped_now = false; }
-  using Bench::lose_link;
-  [[nodiscard]] Instant now() const override { return at(1s * calls); }
-  [[nodiscard]] std::string last_exchange() const override { return "the last exchange\n"; }
-
-  static constexpr std::size_t kUnreachable = 2;
-
-  std::vector<std::size_t> visited;
-  std::vector<std::string> ran;
-  std::vector<std::uint32_t> randoms;
-  int calls = 0;
-  int measured = 0;
-  Duration noise_here = 3us;
-  int late_answers = 0;  ///< of the next ones
-  int wrong_answers = 0;
-  int late_starts = 0;
-  bool is_dead = false;
-  bool has_nobody = false;  ///< who could start it again
-  int revivals_left = 0;    ///< so many times one that is dead can be brought back
-  int deaths_left = 2;      ///< in the case that it dies of
-  bool is_gibberish = false;
-  bool leaves_beyond_open = false;
-  bool obeys_firmware = true;
-  bool is_stopped_now = false;  ///< by who watches over it
-  int supervisors_left = 0;     ///< so many times that happens in a case
-  Duration missed{};            ///< in which it did not run
-  int stops_left = 0;           ///< so many times it stops in a case
-  int stops_in_start = 0;       ///< and on the way to its start
-
- protected:
-  void forget_exchange() override {}
-};
-
-NumberBench& number(Bench& bench) {
-  auto& device = static_cast<NumberBench&>(bench);
-  ++device.calls;
-  return device;
-}
 
 void passes(Bench& bench) {
   number(bench).ran.emplace_back("passes");
@@ -113,22 +47,6 @@ void is_late(Bench& bench) {
   if (device.stops_left-- <= 0) return;
   device.missed += 3s;
   bench.fail_by_silence("an answer in time", "one 3 s later");
-}
-void answers_in_time(Bench& bench) {
-  auto& device = number(bench);
-  const auto is_late = device.late_answers-- > 0;
-  device.ran.emplace_back(is_late ? "late" : "in time");
-  device.expect_in_time({is_late ? 700.0 : 120.0, 0, 500, "ms"}, "0 to 500 ms", "another time");
-}
-/// A moment decides what it hears.
-void races(Bench& bench) {
-  auto& device = number(bench);
-  device.begin_race();
-  device.expect_true(device.late_answers-- <= 0, "a word", "another one");
-}
-void answers_wrong(Bench& bench) {
-  auto& device = number(bench);
-  device.expect_true(device.wrong_answers-- <= 0, "a number", "another one");
 }
 void dies(Bench& bench) {
   if (number(bench).deaths_left-- <= 0) return;
@@ -190,25 +108,6 @@ const Chapter kChapters[] = {{"Numbers",
                               {std::begin(kCases), std::end(kCases)}}};
 const Suite kSuite{"n", "7", kChapters, kStarts};
 
-constexpr Requirement kPrompt[] = {{"n.prompt", Level::kMust, "It is prompt.", "here"},
-                                   {"n.race", Level::kMust, "It is first.", "here"},
-                                   {"n.right", Level::kMust, "It is right.", "here"}};
-constexpr Case kPromptCases[] = {
-    {.requirement = "n.prompt", .rule = "r", .run = answers_in_time},
-    {.requirement = "n.right", .rule = "r", .run = answers_wrong},
-    {.requirement = "n.race", .rule = "r", .run = races, .hazard = Hazard::kCrash}};
-const Chapter kPromptChapters[] = {{"Moments",
-                                    {std::begin(kPrompt), std::end(kPrompt)},
-                                    {std::begin(kPromptCases), std::end(kPromptCases)}}};
-const Suite kPromptSuite{"n", "7", kPromptChapters, kStarts};
-
-Report run_prompt(NumberBench& bench, RunOptions options = {},
-                  const std::string& filter = "n.prompt") {
-  options.selection.filter = filter;
-  options.permissions = Permissions::all();
-  return run_suite(kPromptSuite, bench, options, [](const ReportRow&) {});
-}
-
 Report run(NumberBench& bench, const std::string& filter, RunOptions options = {}) {
   options.selection.filter = filter;
   options.permissions.add(Hazard::kMove);
@@ -219,14 +118,6 @@ Report run(NumberBench& bench, const std::string& filter, RunOptions options = {
 Report run(const std::string& filter, const RunOptions& options = {}) {
   NumberBench bench;
   return run(bench, filter, options);
-}
-
-std::vector<std::string> verdicts(const Report& report) {
-  std::vector<std::string> words;
-  for (const auto& row : report.rows) {
-    words.push_back(row.name + " " + std::string{to_string(row.verdict)});
-  }
-  return words;
 }
 
 using testing::ElementsAre;
@@ -318,162 +209,6 @@ const Suite kFatalSuite{"d", "1", kFatalChapters, kStarts};
 Report run_fatal(NumberBench& bench, RunOptions options = {}) {
   options.permissions = Permissions::all();
   return run_suite(kFatalSuite, bench, options, [](const ReportRow&) {});
-}
-
-/// On a real link, where a sound device is as late as that.
-RunOptions beside(int late_answers, Duration noise = 2ms) {
-  RunOptions options;
-  options.reference = [=] {
-    auto sound = std::make_shared<NumberBench>();
-    sound->late_answers = late_answers;
-    sound->noise_here = noise;
-    return sound;
-  };
-  return options;
-}
-
-TEST(ConformanceRun, TakesNoMoreForTheLinksOwnThanALinkOfItsKindHas) {
-  NumberBench bench;
-  bench.noise_here = 1900ms;
-  const auto report = run(bench, "n.pass", beside(0));
-  EXPECT_EQ(bench.heard_noise(), 1900ms);
-  EXPECT_EQ(bench.noise(), 502ms) << "what binds the device, and the link";
-  EXPECT_EQ(bench.link_noise(), 2ms);
-  EXPECT_THAT(report.facts, testing::Contains(testing::Pair("an emulated device's answers in",
-                                                            "2000 us at most")));
-}
-
-TEST(ConformanceRun, TakesNothingForTheLinksInVirtualTime) {
-  NumberBench bench;
-  bench.noise_here = 20ms;
-  (void)run(bench, "n.pass");
-  EXPECT_EQ(bench.noise(), 20ms);
-  EXPECT_EQ(bench.link_noise(), 0ms);
-}
-
-TEST(ConformanceRun, AccusesNobodyOfAMomentThatIsNotMissedAgain) {
-  NumberBench bench;
-  bench.late_answers = 1;
-  const auto report = run_prompt(bench, beside(0));
-  EXPECT_THAT(verdicts(report), ElementsAre("n.prompt pass"));
-  EXPECT_THAT(bench.ran, ElementsAre("late", "in time", "in time"));
-  EXPECT_THAT(report.rows.front().actual, HasSubstr("once expected 0 to 500 ms"));
-}
-
-TEST(ConformanceRun, AccusesADeviceThatIsLateWhereAnEmulatedOneIsNot) {
-  NumberBench bench;
-  bench.late_answers = 2;
-  EXPECT_THAT(verdicts(run_prompt(bench, beside(0))), ElementsAre("n.prompt fail"));
-}
-
-TEST(ConformanceRun, WantsAMomentMissedAgainAndAgainOnABusyMachine) {
-  const auto late_for = [](int times) {
-    NumberBench bench;
-    bench.late_answers = times;
-    auto options = beside(0);
-    options.is_busy = [] { return true; };
-    return run_prompt(bench, options).rows.front();
-  };
-  for (const int times : {2, 3, 4}) {
-    const auto row = late_for(times);
-    EXPECT_EQ(row.verdict, Verdict::kInconclusive) << times;
-    EXPECT_THAT(row.actual, HasSubstr(std::to_string(times) + " times expected 0 to 500 ms"));
-  }
-  EXPECT_EQ(late_for(5).verdict, Verdict::kFail);
-}
-
-TEST(ConformanceRun, WantsAnyFailureAgainOnABusyMachine) {
-  const auto wrong_for = [](int times, bool is_busy) {
-    NumberBench bench;
-    bench.wrong_answers = times;
-    auto options = beside(0);
-    options.is_busy = [is_busy] { return is_busy; };
-    return run_prompt(bench, options, "n.right").rows.front();
-  };
-  EXPECT_EQ(wrong_for(1, false).verdict, Verdict::kFail);
-  const auto once = wrong_for(1, true);
-  EXPECT_EQ(once.verdict, Verdict::kInconclusive);
-  EXPECT_THAT(once.actual, HasSubstr("2 times as it should be, on a machine that has too much"));
-  EXPECT_EQ(wrong_for(4, true).verdict, Verdict::kInconclusive);
-  EXPECT_EQ(wrong_for(5, true).verdict, Verdict::kFail);
-}
-
-TEST(ConformanceRun, TriesNothingAgainOnABusyMachineOnceSomethingHasFailedForGood) {
-  NumberBench bench;
-  auto options = beside(0);
-  options.is_busy = [] { return true; };
-  bench.late_answers = 5;
-  bench.wrong_answers = 1;
-  const auto found = verdicts(run_prompt(bench, options, "n."));
-  EXPECT_THAT(found, testing::IsSupersetOf({"n.prompt fail", "n.right fail"}));
-}
-
-TEST(ConformanceRun, TriesAStartAgainThatWasLateOnce) {
-  NumberBench bench;
-  bench.late_starts = 1;
-  EXPECT_THAT(verdicts(run_prompt(bench, beside(0))), ElementsAre("n.prompt pass"));
-}
-
-TEST(ConformanceRun, AccusesADeviceWhoseStartIsLateEachTime) {
-  NumberBench bench;
-  bench.late_starts = 100;
-  const auto found = verdicts(run_prompt(bench, beside(0), "n."));
-  EXPECT_THAT(found, testing::Contains("n.start fail"));
-  EXPECT_LT(bench.visited.size(), 10U) << "not again for each case";
-}
-
-TEST(ConformanceRun, LeavesOpenWhatAnEmulatedDeviceOnSuchALinkMissesAsWell) {
-  NumberBench bench;
-  bench.late_answers = 2;
-  const auto report = run_prompt(bench, beside(1));
-  ASSERT_THAT(verdicts(report), ElementsAre("n.prompt inconclusive"));
-  EXPECT_THAT(report.rows.front().actual, HasSubstr("an emulated device on such a link"));
-}
-
-TEST(ConformanceRun, TriesAnEmulatedDeviceAsOftenAsTheOneThatIsAccused) {
-  NumberBench bench;
-  bench.late_answers = 2;
-  RunOptions options;
-  options.reference = [opened = 0]() mutable {
-    auto sound = std::make_shared<NumberBench>();
-    sound->late_answers = ++opened == 3 ? 1 : 0;  // the first one is for the noise
-    return sound;
-  };
-  EXPECT_THAT(verdicts(run_prompt(bench, options)), ElementsAre("n.prompt inconclusive"));
-}
-
-TEST(ConformanceRun, LeavesOpenWhateverAnEmulatedDeviceOnSuchALinkFails) {
-  const auto on_a_link = [](const std::string& filter) {
-    NumberBench bench;
-    const auto report = run(bench, filter, beside(0));
-    return verdicts(report);
-  };
-  EXPECT_THAT(on_a_link("n.fail"), ElementsAre("n.fail inconclusive"));
-  NumberBench broken;
-  broken.obeys_firmware = false;
-  EXPECT_THAT(verdicts(run(broken, "n.firmware", beside(0))), ElementsAre("n.firmware fail"));
-}
-
-TEST(ConformanceRun, TakesWhatAMomentDecidesForAMomentThatWasMissed) {
-  NumberBench lucky;
-  lucky.late_answers = 1;
-  EXPECT_THAT(verdicts(run_prompt(lucky, beside(0), "n.race")), ElementsAre("n.race pass"));
-  NumberBench late;
-  late.late_answers = 2;
-  EXPECT_THAT(verdicts(run_prompt(late, beside(1), "n.race")), ElementsAre("n.race inconclusive"));
-  NumberBench unlucky;
-  unlucky.late_answers = 2;
-  EXPECT_THAT(verdicts(run_prompt(unlucky, beside(0), "n.race")),
-              ElementsAre("n.race inconclusive"))
-      << "chance may decide a race twice";
-  NumberBench other;
-  other.late_answers = 5;
-  EXPECT_THAT(verdicts(run_prompt(other, beside(0), "n.race")), ElementsAre("n.race fail"));
-}
-
-TEST(ConformanceRun, SaysHowNearToItsBoundsAPassWas) {
-  NumberBench bench;
-  EXPECT_EQ(run_prompt(bench).rows.front().margin, "120.0 of 0.0 to 500.0 ms");
 }
 
 TEST(ConformanceRun, RunsLastWhatEndsTheDevicesProgram) {
