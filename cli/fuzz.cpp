@@ -16,6 +16,7 @@
 #include "cli/diff.hpp"
 #include "cli/fuzz_learn.hpp"
 #include "cli/fuzz_material.hpp"
+#include "cli/fuzz_suite.hpp"
 #include "cli/hand_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/report_files.hpp"
@@ -261,6 +262,7 @@ Exit campaign_on(const FuzzRun& run, const std::optional<Folder>& folder, Campai
   auto material = material_of(run.device, how, run.model, length);
   if (!material) return report(material.error());
   material->rules = *rules;
+  material->written = scripts_of_suite(run.device, run.model, material->has_hands, length);
   if (run.options.length) material->longest_tour = length;
   const auto hand = hand_of(run.options.hands);
   auto stage =

@@ -43,6 +43,9 @@ struct Material {
   bool (*strays)(Bytes message){};
   /// The fields of answers that tell what comes of it.
   std::span<const std::string_view> astray_fields{};
+  /// What was written for the device on purpose, as what the cases of its suite do, each from when
+  /// it is new.
+  std::vector<Script> written{};
   bool has_hands = false;      ///< what is beside the link can be done
   bool has_operations = true;  ///< of a bus: transactions may have any form
   /// A client that closes is known to have; else only, as over TCP at first, that it says no more.

@@ -88,19 +88,24 @@ std::vector<KeptRecord> merged(const Script& script, const std::vector<KeptRecor
 
 }  // namespace
 
-Outcome<Script> read_script(std::string_view recording, const std::string& where) {
-  const auto reader = CaptureReader::open(UserFile::of_text(recording, where), where);
-  if (!reader) return tl::unexpected{reader.error()};
+Script script_of(const std::vector<KeptRecord>& recording) {
   Script script;
-  const auto read = for_each_record(**reader, [&](const CaptureRecord& record) -> Outcome<void> {
-    auto kept = KeptRecord::from(record);
-    if (is_done_by_host(kept)) script.push_back(as_done(std::move(kept)));
-    return {};
-  });
-  if (!read) return tl::unexpected{read.error()};
+  for (const auto& record : recording) {
+    if (is_done_by_host(record)) script.push_back(as_done(record));
+  }
   const auto begin = script.empty() ? Instant{} : script.front().time;
   for (auto& record : script) record.time -= begin.time_since_epoch();
   return script;
+}
+
+Outcome<Script> read_script(std::string_view recording, const std::string& where) {
+  const auto reader = CaptureReader::open(UserFile::of_text(recording, where), where);
+  if (!reader) return tl::unexpected{reader.error()};
+  std::vector<KeptRecord> records;
+  return for_each_record(
+             **reader,
+             [&](const CaptureRecord& record) { records.push_back(KeptRecord::from(record)); })
+      .map([&] { return script_of(records); });
 }
 
 Duration length_of(const Script& script) noexcept {

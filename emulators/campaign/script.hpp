@@ -19,8 +19,11 @@ namespace armjig::campaign {
 /// inputs, in order of time. Nothing of what the device does.
 using Script = std::vector<KeptRecord>;
 
-/// What was done in a recording (any text that `CaptureReader` takes); `where` is for messages. CAN
-/// frames are left out, for no link carries them. Problems: those of the reader.
+/// What was done in a recording, its first deed at 0. CAN frames are left out, for no link carries
+/// them.
+[[nodiscard]] Script script_of(const std::vector<KeptRecord>& recording);
+/// The same of any text that `CaptureReader` takes; `where` is for messages. Problems: those of the
+/// reader.
 [[nodiscard]] Outcome<Script> read_script(std::string_view recording, const std::string& where);
 
 /// When its last record is; 0 for none.

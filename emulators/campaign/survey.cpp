@@ -29,6 +29,16 @@ bool are_of_a_row(const Field& one, const Field& other) {
   return without_number(one.name) == without_number(other.name);
 }
 
+/// Those that take little time, the shortest first, and the others.
+std::pair<std::vector<Script>, std::vector<Script>> parted(std::vector<Script> scripts) {
+  constexpr Duration kLittle = 500ms;
+  std::ranges::stable_sort(scripts, {}, length_of);
+  const auto others = std::ranges::upper_bound(scripts, kLittle, {}, length_of);
+  std::vector<Script> long_ones{others, scripts.end()};
+  scripts.erase(others, scripts.end());
+  return {std::move(scripts), std::move(long_ones)};
+}
+
 }  // namespace
 
 Survey::Survey(const Material& material, std::uint64_t seed)
@@ -48,6 +58,8 @@ Script Survey::questions() const {
 }
 
 void Survey::plan() {
+  const auto [short_ones, long_ones] = parted(material_.written);
+  plan_all(nowhere_, short_ones);
   const auto of_all = [this](std::size_t state, std::initializer_list<Exercise> exercises) {
     for (const auto exercise : exercises) {
       for (const auto& kind : repertoire_.kinds()) {
@@ -84,12 +96,15 @@ void Survey::plan() {
   }
   of_all(0, {&Exercises::watched_pairs});
   const auto many_at_once = cases_.size();
+  for (const auto& one : long_ones) {
+    cases_.push_back({[this, one] { return whole(nowhere_, one); }});
+  }
   of_all(0, {&Exercises::watched_lengths, &Exercises::pairs, &Exercises::half_lines,
              &Exercises::mixed_pairs, &Exercises::cut_copies, &Exercises::sweep});
   const auto idle_ones = plan_values(0, &Exercises::values);
   of_all(0, {&Exercises::lengths, &Exercises::odd_bytes});
   for (const auto& one : repertoire_.looks()) {
-    cases_.push_back({[this, &one] { return whole({}, many_copies_of(one)); }});
+    cases_.push_back({[this, &one] { return whole(nowhere_, many_copies_of(one)); }});
   }
   const auto watched_idle_ones = plan_values(0, &Exercises::watched_values);
   of_first({&Exercises::long_gap});

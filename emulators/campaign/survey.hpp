@@ -14,9 +14,10 @@
 
 namespace armjig::campaign {
 
-/// Everything that is known of a device, once: each kind of message in some states, and of each the
-/// values of its fields, itself many times, what is cut off it or added to it, and every other kind
-/// after it, apart and in one piece. Where time is dear, chance comes after that.
+/// Everything that is known of a device, once: what was written for it, and each kind of message in
+/// some states, and of each the values of its fields, itself many times, what is cut off it or
+/// added to it, and every other kind after it, apart and in one piece. Where time is dear, chance
+/// comes after that.
 class Survey {
  public:
   /// Of the messages in sessions drawn from that seed. `material` outlives this.
@@ -56,6 +57,7 @@ class Survey {
 
   const Material& material_;
   Repertoire repertoire_;
+  const Setting nowhere_{};  ///< of what begins where the device is
   Exercises exercises_;
   std::vector<Setting> seldom_;  ///< of the tour
   /// What `matters` found.

@@ -65,6 +65,29 @@ std::vector<CommandFrame> whole_frames_in(const Script& script) {
   return frames;
 }
 
+Script frame_after(Duration pause, int timeout) {
+  const auto frame = parol6::encode(CommandFrame{.timeout = static_cast<std::uint8_t>(timeout)});
+  return {{.time = Instant{pause},
+           .kind = LinkKind::kStream,
+           .direction = Direction::kToDevice,
+           .bytes = {frame.begin(), frame.end()}}};
+}
+
+TEST(Survey, BeginsWithWhatWasWrittenForTheDeviceAndTakesLittleTime) {
+  auto material = kBoard;
+  material.draw_session = nullptr;
+  material.written = {frame_after(900ms, 3), frame_after(20ms, 2), frame_after(10ms, 1)};
+  const auto scripts = all_of(Survey{material, 1});
+  ASSERT_GE(scripts.size(), 2U);
+  const auto timeouts_of = [](const Script& script) {
+    std::vector<int> timeouts;
+    for (const auto& frame : whole_frames_in(script)) timeouts.push_back(frame.timeout);
+    return timeouts;
+  };
+  EXPECT_EQ(timeouts_of(scripts[0]), (std::vector{1, 2})) << "in one case, the shortest first";
+  EXPECT_EQ(timeouts_of(scripts[1]), std::vector{3});
+}
+
 TEST(Survey, GivesEachFieldOfACommandTheNumbersBesideWhichComputationsTurn) {
   std::array<std::set<std::int32_t>, 6> positions;
   std::set<int> timeouts;
