@@ -15,6 +15,9 @@ inline constexpr std::string_view kGoodSum = " A9";
 inline constexpr std::string_view kSpeedSet =
     "01 40 01 01 00 00 00 3F 01 00 00 00 3F 01 00 00 00 BF 00 00 80 3E BD";
 
+inline constexpr std::string_view kOtherKind =
+    "02 71 02 01 00 00 80 3F 01 00 00 80 3F 01 00 00 00 00 00 00 00 00 08";
+
 inline void program(NodeBench& node, std::string_view set, std::string_view checksum = "") {
   node.send_bytes(fmt::format("20 {}{}", set, checksum));
 }

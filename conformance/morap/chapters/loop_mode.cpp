@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/morap/loop_cases.hpp"
+#include "conformance/morap/program_cases.hpp"
 
 namespace armjig::morap::conformance {
 namespace {
@@ -112,6 +113,13 @@ void begins_again_with_parameters(NodeBench& node) {
   node.expect_levels_at_ticks({12, 4, 8});
 }
 
+void begins_again_with_a_dropped_set(NodeBench& node) {
+  run_integrator(node);
+  node.expect_levels_at_ticks({4, 8});
+  program(node, kOtherKind);
+  node.expect_levels_at_ticks({12, 4, 8});
+}
+
 void goes_on_when_enabled_again(NodeBench& node) {
   run_integrator(node);
   node.expect_levels_at_ticks({4, 8});
@@ -200,6 +208,12 @@ constexpr Clause kLoopModeClauses[] = {
          "firmware, tick", Profiles::kFirmware),
     loop("An integrator, and the speed controller.", on<begins_again_with_parameters>),
     variant("slowly", slowly(on<begins_again_with_parameters>)),
+
+    must("morap.loop.dropped-parameters-reset",
+         "So do parameters of a kind that there is not, which are used nowhere.",
+         "firmware, tick and identifier 32", Profiles::kFirmware),
+    loop("An integrator.", on<begins_again_with_a_dropped_set>),
+    variant("slowly", slowly(on<begins_again_with_a_dropped_set>)),
 
     must("morap.loop.reenabled-goes-on",
          "A loop that was disabled and enabled between two ticks goes on.",

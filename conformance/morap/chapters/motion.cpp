@@ -288,6 +288,50 @@ std::optional<double> first_of_brake(NodeBench& node, int sign) {
   return std::nullopt;
 }
 
+/// The lowest voltage of the next ticks; none if not each of them was looked at.
+std::optional<double> lowest_voltage(NodeBench& node) {
+  constexpr auto kSomeTicks = 16ms;
+  constexpr auto kOftenEnough = 4ms;
+  const auto end = node.now() + kSomeTicks;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (auto last = node.now(); !node.is_over() && last < end;) {
+    lowest = std::min(lowest, double{node.number(kReadVoltage)});
+    if (node.now() - last > kOftenEnough) return std::nullopt;
+    last = node.now();
+  }
+  return lowest;
+}
+
+/// After what begins a mode again a node takes the shaft for one at rest, for a tick.
+template <class Deed>
+void expect_limit_of_standstill(NodeBench& node, Deed begin_again) {
+  constexpr int kTries = 5;
+  std::optional<double> lowest;
+  for (int i = 0; i < kTries && !lowest && !node.is_over(); ++i) {
+    begin_again(turn_fast(node, 1));
+    lowest = lowest_voltage(node);
+  }
+  node.send(kDisable);
+  if (!lowest) return node.leave_open("this bus is too slow to be read once in each tick");
+  const double most = (node.motor().standstill_levels + 1) * double{kVoltsPerLevel};
+  node.expect_true(*lowest < most, fmt::format("a tick with less than {:.2f} V", most),
+                   fmt::format("{:.2f} V or more", *lowest));
+}
+
+void limits_again_after_a_torque(NodeBench& node) {
+  expect_limit_of_standstill(node, [&](float fast) {
+    node.send(kTorque, 0.5F);
+    node.pause(50ms);
+    node.send(kVoltage, fast);
+  });
+}
+
+void limits_again_with_parameters(NodeBench& node) {
+  expect_limit_of_standstill(node, [&](float /*fast*/) {
+    node.send(proportional(node.loop_rate(), 0.0F, ControllerKind::kSpeed));
+  });
+}
+
 /// A node that shorted its motor at once would drive far more than the rated current.
 template <int sign>
 void brakes_within_limit(NodeBench& node) {
@@ -480,6 +524,14 @@ constexpr Clause kMotionClauses[] = {
     variant("zero-backwards", moving(on<brakes_within_limit<-1>>)),
     variant("reversed", moving(on<reverses_within_limit<1>>)),
     variant("reversed-backwards", moving(on<reverses_within_limit<-1>>)),
+
+    must("morap.motion.limited-anew",
+         "For one tick after another mode, or after new parameters, a drive voltage is limited as "
+         "at standstill.",
+         "firmware, tick and voltage mode", Profiles::kFirmware),
+    variant("torque", moving(on<limits_again_after_a_torque>)),
+    variant("parameters", from(kFree, Hazard::kProgram, "New parameters of the speed controller.",
+                               on<limits_again_with_parameters>)),
 
     must("morap.motion.torque",
          "A torque gets the voltage of its current and that of the motion, as fast as the shaft "

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "conformance/morap/cases.hpp"
+#include "conformance/morap/loop_cases.hpp"
 
 namespace armjig::morap::conformance {
 namespace {
@@ -16,6 +17,15 @@ void voltage_ended(NodeBench& node) {
   node.send(end);
   node.settle();
   node.expect_levels(0);
+}
+
+/// Of a node that is not calibrated.
+template <CommandId reference>
+void drives_nothing(NodeBench& node) {
+  node.send(reference, 1.5F);
+  node.settle();
+  node.expect_levels(0);
+  node.send(kCalibrationUnknown);
 }
 
 /// Calibrated and ticking, with everything that was pending done.
@@ -77,13 +87,11 @@ void expect_loop_rate(NodeBench& node, std::uint16_t rate_hz, int ticks) {
 /// An integrator that comes to 1.4 V within a tenth of a second at 1000 Hz, and its voltage by
 /// then.
 void expect_growth_at_rate(NodeBench& node, int rate_hz) {
-  constexpr float kFar = 75.0F;
   constexpr float kGain = 1.8e-4F;
   constexpr double kLittle = 3;  // levels
-  ControllerSet set;
-  set.rate_hz = static_cast<std::uint16_t>(rate_hz);
-  set.d = set.c = set.f = filter({0.0F});
-  set.integral = kGain * 1000.0F / static_cast<float>(rate_hz) / 2;
+  const float integral = kGain * 1000.0F / static_cast<float>(rate_hz) / 2;
+  const auto set =
+      position_set({0.0F}, {0.0F}, {0.0F}, integral, static_cast<std::uint16_t>(rate_hz));
   node.send(kDisable);
   node.send(set);
   node.settle();
@@ -240,13 +248,11 @@ constexpr Clause kOutputClauses[] = {
 
     must("morap.voltage.uncalibrated", "Without calibration no voltage is applied.",
          "document, motor status; vector 14"),
-    from(kUncalibrated, Hazard::kMove, "1.5 V.",
-         [](NodeBench& node) {
-           node.send(kVoltage, 1.5F);
-           node.settle();
-           node.expect_levels(0);
-           node.send(kCalibrationUnknown);
-         }),
+    from(kUncalibrated, Hazard::kMove, "1.5 V.", on<drives_nothing<kVoltage>>),
+    variant("direct", from(kUncalibrated, Hazard::kMove, "A direct one of 1.5 V.",
+                           on<drives_nothing<kDirectVoltage>>)),
+    variant("torque", from(kUncalibrated, Hazard::kMove, "A torque of 1.5 N m.",
+                           on<drives_nothing<kTorque>>)),
 
     must("morap.voltage.disabled", "Once disabled no voltage is applied.",
          "document; recording loop-disable-coast"),

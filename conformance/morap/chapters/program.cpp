@@ -19,9 +19,6 @@ constexpr std::string_view kOfNone = "00 C8 00 00 00 00 00 00 00 00";
 
 constexpr std::string_view kZeros = "00 00 00 00 00 00 00 00 00 00";
 
-constexpr std::string_view kOtherKind =
-    "02 71 02 01 00 00 80 3F 01 00 00 80 3F 01 00 00 00 00 00 00 00 00 08";
-
 /// Programmed, and read back when it is in use.
 void expect_kept(NodeBench& node, CommandId selector, std::string_view set) {
   program(node, set);

@@ -390,6 +390,15 @@ constexpr Clause kReferenceClauses[] = {
           node.expect_bytes(kReadAngle, node.motor().thousand_counts);
         },
         kFresh),
+    variant("at-rest", reference(
+                           "5 rad, then 31.",
+                           [](NodeBench& node) {
+                             constexpr double kLittle = 0.1;  // rad, of a shaft that nothing drives
+                             node.send(kCalibrateAngle, 5.0F);
+                             node.send(kCalibrationUnknown);
+                             node.expect_near(kReadAngle, 5.0, kLittle);
+                           },
+                           Start::kDisabled)),
 };
 
 }  // namespace

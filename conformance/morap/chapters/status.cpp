@@ -142,6 +142,15 @@ constexpr Clause kStatusClauses[] = {
     must("morap.status.enabled-by-voltage",
          "A drive voltage makes the status of a calibrated node 1.", "document, motor status"),
     state("Of 0.", on<enabled_by<kVoltage>>, kCalibrated),
+    variant("any", from(kCalibrated, Hazard::kMove, "Up to 1000 V, for a moment.",
+                        [](NodeBench& node) {
+                          for (const float volts : {1.0F, -23.0F, 30.0F, -1000.0F}) {
+                            node.about(fmt::format("{} V", volts));
+                            node.send(kVoltage, volts);
+                            node.expect_status(kEnabled);
+                            node.send(kDisable);
+                          }
+                        })),
 
     must("morap.status.enabled-by-torque", "A torque makes the status of a calibrated node 1.",
          "firmware; recording static-status-transitions", Profiles::kFirmware),

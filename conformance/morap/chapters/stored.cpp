@@ -16,6 +16,15 @@ void expect_back(NodeBench& node, CommandId selector, std::string_view set) {
   node.expect_same(node.read(selector, 31), before);
 }
 
+/// The same with a reference of the other mode, which a node that is not calibrated only keeps.
+template <CommandId selector, CommandId other_mode>
+void expect_back_in_other_mode(NodeBench& node) {
+  node.send(kCalibrationUnknown);
+  node.send(other_mode, 0.0F);
+  expect_back(node, selector, selector == kReadPositionSet ? good() : std::string{kSpeedSet});
+  node.send(kCalibrationUnknown);
+}
+
 /// As they are at power-on, and when they were loaded.
 template <CommandId selector>
 void expect_stored(NodeBench& node) {
@@ -50,12 +59,19 @@ constexpr Clause kStoredClauses[] = {
     variant("at-boot", programming("It is in use at power-on.", on<expect_stored<kReadPositionSet>>,
                                    kSwitchedOn)),
 
+    variant("in-speed-mode", programming("After a speed reference.",
+                                         on<expect_back_in_other_mode<kReadPositionSet, kSpeed>>)),
+
     must("morap.defaults.speed", "Identifier 33 brings the stored speed controller back.",
          "document; firmware", Profiles::kFirmware),
     programming("Programmed and loaded.",
                 [](NodeBench& node) { expect_back(node, kReadSpeedSet, kSpeedSet); }),
     variant("at-boot", programming("It is in use at power-on.", on<expect_stored<kReadSpeedSet>>,
                                    kSwitchedOn)),
+
+    variant("in-position-mode",
+            programming("After a position reference.",
+                        on<expect_back_in_other_mode<kReadSpeedSet, kPosition>>)),
 
     must("morap.defaults.while-enabled",
          "The stored controllers are loaded also into an enabled node.", "firmware, identifier 33",

@@ -195,6 +195,18 @@ constexpr Clause kTuneClauses[] = {
                   expect_outcome(node, "22 03 CD CC 4C 3E 00 00 10 C1", kFailure);
                   expect_outcome(node, "22 FF CD CC 4C 3E 00 00 10 C1", kFailure);
                 }),
+    variant("each-bit",
+            programming("Kinds 0 to 2 with one of the other bits.",
+                        [](NodeBench& node) {
+                          for (unsigned bit = 4; bit <= 0x80; bit <<= 1U) {
+                            for (const unsigned kind : {bit, bit + 1, bit + 2}) {
+                              node.about(fmt::format("kind {}", kind));
+                              expect_outcome(node,
+                                             fmt::format("22 {:02X} CD CC 4C 3E 00 00 10 C1", kind),
+                                             kFailure);
+                            }
+                          }
+                        })),
 
     must("morap.tune.failure-unused",
          "A refused tuning message leaves both controllers as they are.",
