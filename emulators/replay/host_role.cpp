@@ -220,7 +220,6 @@ class ServerPlaying : public Playing {
  private:
   struct Connection {
     std::unique_ptr<SessionPort> port;
-    Duration offset{};  ///< the server's clock is so much ahead
     bool is_open = false;
   };
 
@@ -285,28 +284,27 @@ class ServerPlaying : public Playing {
       if (auto heard = listen_until(*unsaid); !heard) return heard;
     }
     auto port = server_.make_port();
-    const auto offset = server_.now() - port->now();
     const auto connected = port->connect(port->now() + kConnectPatience);
     if (!connected && (unsaid || connected.error().code != ErrorCode::kRefused)) return connected;
     ++played_.sent;
     if (!unsaid) {
-      played_.actual.push_back(border(id, clock_.recorded(port->now() + offset), "connect",
-                                      connected ? "ok" : "refused"));
+      played_.actual.push_back(
+          border(id, clock_.recorded(port->now()), "connect", connected ? "ok" : "refused"));
     }
     auto& connection = connections_[id];
     // One that the recording did not end is left here as a client leaves, not as an operator does.
     if (connection.port) connection.port->close();
-    connection = {std::move(port), offset, connected.has_value()};
+    connection = {std::move(port), connected.has_value()};
     return {};
   }
 
   Result<void> listen(std::uint32_t id, Connection& connection, Instant until) {
     std::array<std::byte, 4096> buffer;
     while (connection.is_open) {
-      const auto received = connection.port->receive(buffer, until - connection.offset);
+      const auto received = connection.port->receive(buffer, until);
       if (!received) return tl::unexpected{received.error()};
       if (received->arrival == Arrival::kDeadline) return {};
-      const auto now = connection.port->now() + connection.offset;
+      const auto now = connection.port->now();
       if (received->arrival == Arrival::kData) {
         hear({.kind = LinkKind::kSession, .direction = Direction::kFromDevice, .id = id}, now,
              Bytes{buffer}.first(received->size));

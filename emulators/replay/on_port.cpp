@@ -57,7 +57,6 @@ class Backlog {
 /// A connection of a server; its clock runs as the server's does.
 struct Connection {
   std::unique_ptr<SessionPort> port;
-  Duration offset{};  ///< the server's clock is so much ahead
   Backlog came;
   bool is_open = false;
 
@@ -65,7 +64,7 @@ struct Connection {
   std::string listen_until(Instant time) {
     std::array<std::byte, 4096> buffer;
     while (is_open) {
-      const auto received = port->receive(buffer, time - offset);
+      const auto received = port->receive(buffer, time);
       if (!received || received->arrival == Arrival::kDeadline) return {};
       if (received->arrival == Arrival::kData) {
         came.add(Bytes{buffer}.first(received->size));
@@ -120,12 +119,11 @@ class ServerReplay : public Replaying {
 
   bool connect(const TraceEvent& event) {
     auto port = server_.make_port();
-    const auto offset = server_.now() - port->now();
     const auto connected = port->connect(port->now());
     auto actual = event;
     actual.text = connected ? "ok" : "refused";
     replayed_.add(event, std::move(actual));
-    connections_[event.id] = {std::move(port), offset, {}, connected.has_value()};
+    connections_[event.id] = {std::move(port), {}, connected.has_value()};
     return true;
   }
 

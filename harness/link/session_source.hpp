@@ -10,8 +10,8 @@ namespace armjig {
 /// One server, and as many ports to it as are wanted: how several clients are had at once.
 class SessionSource : public Endpoint {
  public:
-  /// A port without a connection. Lives no longer than this. Each has a clock of its own; they only
-  /// agree in how fast they are, with each other and with `now`.
+  /// A port without a connection. Lives no longer than this. All have one clock, that of `now`, so
+  /// that what one client heard can be before or after what another one did.
   [[nodiscard]] virtual std::unique_ptr<SessionPort> make_port() = 0;
 
   /// Lets time pass while nobody reads.

@@ -23,7 +23,8 @@ bool is_reset(int error_number) noexcept {
 
 class TcpSession final : public SessionPort {
  public:
-  explicit TcpSession(TcpAddress address) : address_{std::move(address)} {}
+  explicit TcpSession(TcpAddress address, Stopwatch clock = {})
+      : address_{std::move(address)}, clock_{clock} {}
   ~TcpSession() override { close_in_order(); }
 
   Result<void> connect(Instant deadline) override {
@@ -125,7 +126,7 @@ class TcpServer final : public SessionSource {
   explicit TcpServer(TcpAddress address) : address_{std::move(address)} {}
 
   std::unique_ptr<SessionPort> make_port() override {
-    return std::make_unique<TcpSession>(address_);
+    return std::make_unique<TcpSession>(address_, clock_);
   }
   [[nodiscard]] Instant now() const override { return clock_.now(); }
   void pause(Duration duration) override { std::this_thread::sleep_for(duration); }

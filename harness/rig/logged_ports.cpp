@@ -51,8 +51,8 @@ class LoggedStream final : public StreamAround {
 
 class LoggedSession final : public SessionAround {
  public:
-  LoggedSession(std::unique_ptr<SessionPort> port, std::shared_ptr<WireLog> log, Duration offset)
-      : SessionAround{std::move(port)}, log_{std::move(log)}, offset_{offset} {}
+  LoggedSession(std::unique_ptr<SessionPort> port, std::shared_ptr<WireLog> log)
+      : SessionAround{std::move(port)}, log_{std::move(log)} {}
   ~LoggedSession() override { write_end("client-close"); }
 
   Result<void> connect(Instant deadline) override {
@@ -100,13 +100,11 @@ class LoggedSession final : public SessionAround {
     if (std::exchange(is_open_, false)) write_border("disconnect", how);
   }
   void write_border(std::string_view direction, std::string_view how) {
-    log_->add_border(time(), connection_, direction, how);
+    log_->add_border(now(), connection_, direction, how);
   }
-  void write_bytes(Direction direction, Bytes bytes) { talk_->add(time(), direction, bytes); }
-  [[nodiscard]] Instant time() const { return now() + offset_; }
+  void write_bytes(Direction direction, Bytes bytes) { talk_->add(now(), direction, bytes); }
 
   std::shared_ptr<WireLog> log_;
-  Duration offset_;
   std::optional<WireLog::Talk> talk_;  ///< of the connection
   std::uint32_t connection_ = 0;
   bool is_open_ = false;
@@ -117,8 +115,7 @@ class LoggedSource final : public SourceAround {
   LoggedSource(std::unique_ptr<SessionSource> inner, std::shared_ptr<WireLog> log)
       : SourceAround{std::move(inner),
                      [this](std::unique_ptr<SessionPort> port) {
-                       const auto offset = now() - port->now();
-                       return put_log_on(std::move(port), log_, offset);
+                       return put_log_on(std::move(port), log_);
                      }},
         log_{std::move(log)} {}
 
@@ -246,8 +243,8 @@ std::unique_ptr<StreamPort> put_log_on(std::unique_ptr<StreamPort> port,
   return std::make_unique<LoggedStream>(std::move(port), std::move(log));
 }
 std::unique_ptr<SessionPort> put_log_on(std::unique_ptr<SessionPort> port,
-                                        std::shared_ptr<WireLog> log, Duration offset) {
-  return std::make_unique<LoggedSession>(std::move(port), std::move(log), offset);
+                                        std::shared_ptr<WireLog> log) {
+  return std::make_unique<LoggedSession>(std::move(port), std::move(log));
 }
 std::unique_ptr<SessionSource> put_log_on(std::unique_ptr<SessionSource> source,
                                           std::shared_ptr<WireLog> log) {

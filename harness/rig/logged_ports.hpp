@@ -13,12 +13,10 @@ namespace armjig {
 [[nodiscard]] std::unique_ptr<StreamPort> put_log_on(std::unique_ptr<StreamPort> port,
                                                      std::shared_ptr<WireLog> log);
 
-/// Every segment of every connection, and how each began and ended. `offset` is what the log's
-/// clock is ahead of the port's.
+/// Every segment of every connection, and how each began and ended.
 [[nodiscard]] std::unique_ptr<SessionPort> put_log_on(std::unique_ptr<SessionPort> port,
-                                                      std::shared_ptr<WireLog> log,
-                                                      Duration offset = {});
-/// The same of every connection to a server, by one clock.
+                                                      std::shared_ptr<WireLog> log);
+/// The same of every connection to a server.
 [[nodiscard]] std::unique_ptr<SessionSource> put_log_on(std::unique_ptr<SessionSource> source,
                                                         std::shared_ptr<WireLog> log);
 

@@ -137,6 +137,18 @@ TEST_F(TcpSession, NeedsAConnection) {
   EXPECT_EQ(receive(), fail(ErrorCode::kDisconnected));
 }
 
+TEST(TcpServer, HasOneClockForAllItsSessions) {
+  const auto server = open_tcp_server("127.0.0.1:1");
+  ASSERT_TRUE(server);
+  const auto first = (*server)->make_port();
+  while ((*server)->now() < at(1ms)) {
+  }
+  const auto before = (*server)->now();
+  const auto second = (*server)->make_port();
+  EXPECT_GE(second->now(), before);
+  EXPECT_GE(first->now(), before);
+}
+
 TEST(TcpSessionWithoutServer, IsRefused) {
   const auto session = make_tcp_session(Listener{}.address());
   ASSERT_TRUE(session);

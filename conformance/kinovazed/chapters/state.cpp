@@ -170,6 +170,20 @@ void expect_folded_from_afar(ServerBench& server) {
   expect_time(server, after, usual - 300ms - server.noise(), ServerBench::kMotionTime);
 }
 
+/// Away from its ready pose the arm has a way to go, however it was led away.
+void expect_initialized_from_afar(ServerBench& server) {
+  const auto usual = time_until(server, "Initialize", Event::kInitialized);
+  for (const auto* const mode : {"XYZ", "Axis1to3", "Axis4to6"}) {
+    server.perform(std::string{"SetJoystickMode:"} + mode, Event::kJoystickModeSet);
+    server.accept("MoveJoystick:0:0:400");
+    server.pause(1s);
+    server.perform("SetJoystickMode:NoMode", Event::kJoystickModeSet);
+    const auto after = time_until(server, "Initialize", Event::kInitialized);
+    server.about(fmt::format("Initialize after a second of steering in {}", mode));
+    expect_time(server, after, usual + 200ms, ServerBench::kMotionTime);
+  }
+}
+
 /// The way to Home from where a mode ended an objective, some time after Freeze and Unfreeze.
 Duration way_from_unfinished(ServerBench& server, Duration after) {
   (void)time_of(server, "Home");
@@ -330,6 +344,12 @@ constexpr Clause kStateClauses[] = {
          "In idle Initialize leads by way of initializing back to idle.",
          "server, state-command-matrix"),
     in(kIdle, "Initialized, and beat 21.", on<initialize>),
+
+    must("kinovazed.state.idle.initialize-moves",
+         "In idle Initialize leads an arm that was steered away back to its ready pose first.",
+         "server, homing", Profiles::kFirmware),
+    in(kIdle, "It takes longer after a second of each of three modes.",
+       on<expect_initialized_from_afar>),
 
     must("kinovazed.state.idle.retract", "In idle Retract leads to retracting.",
          "server, state-command-matrix"),
