@@ -40,7 +40,7 @@ Script script_of_case(const Device& device, const RigOptions& model, const Case&
   forget_power_cycle(records);
   (*bench)->begin(profile, seed_of(one, kSeed));
   one.run(**bench);
-  return campaign::script_of(records);
+  return campaign::with_ends(campaign::script_of(records));  // others come after it
 }
 
 }  // namespace

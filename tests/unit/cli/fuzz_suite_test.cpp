@@ -41,6 +41,10 @@ TEST_P(ScriptsOfSuite, AreShortEnoughAndNeedNoHands) {
   }));
 }
 
+TEST_P(ScriptsOfSuite, LeaveNoConnectionOpen) {
+  for (const auto& script : scripts(false, 3s)) EXPECT_EQ(campaign::with_ends(script), script);
+}
+
 TEST_P(ScriptsOfSuite, UseHandsThatAreThere) {
   EXPECT_TRUE(std::ranges::any_of(scripts(true, 3s), is_by_hand_somewhere));
 }
