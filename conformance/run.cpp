@@ -217,8 +217,8 @@ class Run {
                     });
     if (is_disturbed_ && !bench_.error()) {
       result.judgement = {Verdict::kInconclusive,
-                           {},
-                           "this process did not run all the time, whenever it was started"};
+                          {},
+                          "this process did not run all the time, whenever it was started"};
     }
     return result;
   }
