@@ -10,8 +10,8 @@
 namespace armjig::cli {
 
 /// What the cases of the device's suite do to that emulated device from when it is new, a script
-/// for each that takes no longer than `longest`. Without hands those are left out that do something
-/// beside the link.
+/// for each that takes no longer than `longest`. Left out are cases that search, or end the
+/// device's program, and without hands those that do something beside the link.
 [[nodiscard]] std::vector<campaign::Script> scripts_of_suite(const Device& device,
                                                              const RigOptions& model,
                                                              bool has_hands, Duration longest);

@@ -531,7 +531,7 @@ constexpr Clause kMotionClauses[] = {
     variant("reversed", moving(on<reverses_within_limit<1>>)),
     variant("reversed-backwards", moving(on<reverses_within_limit<-1>>)),
 
-    must("morap.motion.limited-anew",
+    must("morap.motion.limited-again",
          "For one tick after another mode, or after new parameters, a drive voltage is limited as "
          "at standstill.",
          "firmware, tick and voltage mode", Profiles::kFirmware),

@@ -9,22 +9,24 @@
 namespace armjig::morap::conformance {
 namespace {
 
+void expect_levels_later(NodeBench& node, int levels) {
+  node.settle();
+  node.expect_levels(levels);
+}
+
 template <CommandId end>
 void voltage_ended(NodeBench& node) {
   node.send(kVoltage, 1.5F);
-  node.settle();
-  node.expect_levels(32);
+  expect_levels_later(node, 32);
   node.send(end);
-  node.settle();
-  node.expect_levels(0);
+  expect_levels_later(node, 0);
 }
 
 /// Of a node that is not calibrated.
 template <CommandId reference>
 void drives_nothing(NodeBench& node) {
   node.send(reference, 1.5F);
-  node.settle();
-  node.expect_levels(0);
+  expect_levels_later(node, 0);
   node.send(kCalibrationUnknown);
 }
 
@@ -135,8 +137,7 @@ constexpr Case driven(std::string_view rule, CaseBody run) {
 void expect_direct_settled(NodeBench& node, float volts, int levels) {
   node.about(fmt::format("asked for {} V", volts));
   node.send(kDirectVoltage, volts);
-  node.settle();
-  node.expect_levels(levels);
+  expect_levels_later(node, levels);
 }
 
 /// The voltage at the first tick after a reference; none if nobody knows that it was read before
@@ -230,8 +231,7 @@ constexpr Clause kOutputClauses[] = {
                   {Row{0.0234F, 0}, {0.0235F, 1}, {0.5F, 11}, {1.0F, 21}, {1.5F, 32}}) {
                node.about(fmt::format("asked for {} V", volts));
                node.send(kVoltage, volts);
-               node.settle();
-               node.expect_levels(levels);
+               expect_levels_later(node, levels);
              }
              node.send(kDisable);
            }),
@@ -241,8 +241,7 @@ constexpr Clause kOutputClauses[] = {
     driven("-1.5 V.",
            [](NodeBench& node) {
              node.send(kVoltage, -1.5F);
-             node.settle();
-             node.expect_levels(-32);
+             expect_levels_later(node, -32);
              node.send(kDisable);
            }),
 
