@@ -47,6 +47,13 @@ class Shrinking {
     }
   }
 
+  /// Half by half without its beginning, nor the time that takes: of many cases in a row the last
+  /// one may be enough, and each try takes as long as all of them.
+  void cut_beginning() {
+    while (script_.size() > 1 && try_instead(beginning_at(script_.size() / 2))) {
+    }
+  }
+
   /// What counts messages may count harmless ones, too: as few of them as do, in place of all but
   /// the last few records.
   void count(const Script& plain) {
@@ -180,6 +187,13 @@ class Shrinking {
 
  private:
   static constexpr std::size_t kMany = 100;  ///< more than anybody reads
+
+  /// That record is the first one then.
+  [[nodiscard]] Script beginning_at(std::size_t place) const {
+    Script rest(script_.begin() + static_cast<std::ptrdiff_t>(place), script_.end());
+    shift_from(rest, 0, -length_of(script_));
+    return rest;
+  }
 
   bool look_often(const Script& lead, const Script& question, Duration pause, std::size_t least) {
     constexpr int kTimes = 1'200;
@@ -387,6 +401,7 @@ Script shrink(Script script, const Script& plain, MakeDissector make_dissector, 
               const std::function<bool()>& may_go_on) {
   Shrinking shrinking{std::move(script), make_dissector, shows, may_go_on};
   shrinking.cut_end();
+  shrinking.cut_beginning();
   shrinking.hurry();
   shrinking.join();
   shrinking.count(plain);

@@ -1,29 +1,31 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Whole suites on sound devices accuse none: verdicts_soak.py ARMJIG [RUNS [DEVICE...]]
+"""Whole suites on sound devices accuse none.
 
 Each device is hosted on its kind of link (a pseudo-terminal, TCP, a virtual I2C bus), with commands for hands, restarts
-and power cycles. A quiet run first, alone; then RUNS runs (60), four at a time beside two busy loops, of devices that
-are as fast or slow as sound ones may be. What fails, is flaky, or is in the way of the rig is false; of what the quiet
-run judged, each has to judge 97 %."""
+and power cycles. A quiet run first, alone; then RUNS runs, four at a time beside two busy loops, of devices that are as
+fast or slow as sound ones may be. What fails, is flaky, or is in the way of the rig is false; of what the quiet run
+judged, each has to judge 97 %."""
 
+import argparse
+import collections
 import concurrent.futures
 import contextlib
+import datetime
+import hashlib
 import json
+import pathlib
 import subprocess
 import sys
+import threading
 import time
 
 from hosted_devices import DEVICES, hosted, load
 
-ARMJIG = sys.argv[1]
-RUNS = int(sys.argv[2]) if len(sys.argv) > 2 else 60
-CHOSEN = sys.argv[3:] or list(DEVICES)
 AT_ONCE = 4
 BUSY_LOOPS = 2
 LEAST_SHARE = 0.97
-JUDGED = ("pass", "deviation")
-FALSE = ("fail", "flaky", "error")
+VERDICTS = {"judged": ("pass", "deviation"), "false": ("fail", "flaky", "error"), "open": ("inconclusive",)}
 
 # The first is that of the quiet run; the runs beside busy loops take them in turn.
 SOUND = {"parol6": ["pass-us=10", "pass-us=100", "pass-us=250"],
@@ -33,10 +35,35 @@ SOUND = {"parol6": ["pass-us=10", "pass-us=100", "pass-us=250"],
 BACK = {"parol6": ["--power-cycle", "power"], "kinovazed": ["--restart", "restart"], "morap": ["--power-cycle", "power"]}
 
 
-def verdicts_of(device, option):
+class Runs:
+    """Runs of one program, those of before too if there is a log, which any other session may go on with."""
+
+    def __init__(self, armjig, log):
+        self.armjig, self.log, self.lock = armjig, log, threading.Lock()
+        self.program = hashlib.sha256(pathlib.Path(armjig).read_bytes()).hexdigest()
+        kept = log.read_text().splitlines() if log and log.exists() else []
+        self.all = [run for run in map(json.loads, kept) if run["program"] == self.program]
+
+    def of(self, device, kind):
+        return [run for run in self.all if (run["device"], run["kind"]) == (device, kind)]
+
+    def make(self, device, option, kind):
+        rows, seconds = verdicts_of(self.armjig, device, option)
+        run = {"program": self.program, "date": f"{datetime.datetime.now():%F %R}", "device": device, "kind": kind,
+               "option": option, "seconds": round(seconds), "load": load()}
+        run |= {name: told(rows, verdicts) for name, verdicts in VERDICTS.items()}
+        with self.lock:
+            self.all.append(run)
+            if self.log:
+                with self.log.open("a") as log:
+                    print(json.dumps(run), file=log)
+            tell(run)
+
+
+def verdicts_of(armjig, device, option):
     """What the cases come to, and how long that took."""
     begun = time.time()
-    with hosted(ARMJIG, device, "--set", option) as one:
+    with hosted(armjig, device, "--set", option) as one:
         way, back = BACK[device]
         report = one.folder / "report.json"
         done = one.run("conformance", device, "--tier", "full", "--require", "0", "--hand", one.hand, way,
@@ -46,21 +73,19 @@ def verdicts_of(device, option):
         return json.loads(report.read_text())["rows"], time.time() - begun
 
 
-def named(rows, *verdicts):
-    return {row["name"]: row for row in rows if row["verdict"] in verdicts}
+def told(rows, verdicts):
+    """Of each case with one of the verdicts what it says, that of one that passed is nothing."""
+    return {row["name"]: f"{row.get('expected', '')} / {row['actual']}" if "actual" in row else ""
+            for row in rows if row["verdict"] in verdicts}
 
 
-def counts(rows):
-    verdicts = sorted({row["verdict"] for row in rows})
-    return ", ".join(f"{len(named(rows, verdict))} {verdict}" for verdict in verdicts)
-
-
-def tell(device, option, rows, seconds):
-    print(f"{device} {option}: {counts(rows)}; {seconds:.0f} s; {load()}", flush=True)
-    for name, row in named(rows, *FALSE).items():
-        print(f"  {row['verdict']} {name}: {row['expected']} / {row['actual']}", flush=True)
-    if left_open := list(named(rows, "inconclusive")):
-        print(f"  inconclusive: {', '.join(left_open)}", flush=True)
+def tell(run):
+    counts = ", ".join(f"{len(run[name])} {name}" for name in VERDICTS)
+    print(f"{run['date']} {run['device']} {run['option']}, {run['kind']}: {counts}; {run['seconds']} s; {run['load']}")
+    for name in ("false", "open"):
+        for case, words in run[name].items():
+            print(f"  {name}: {case}: {words}")
+    sys.stdout.flush()
 
 
 @contextlib.contextmanager
@@ -74,34 +99,43 @@ def busy():
             loop.wait()
 
 
-def busy_run(device, option, quiet):
-    rows, seconds = verdicts_of(device, option)
-    tell(device, option, rows, seconds)
-    false = named(rows, *FALSE)
-    share = len(quiet & named(rows, *JUDGED).keys()) / len(quiet)
-    print(f"  {share:.1%} of what the quiet run judged", flush=True)
-    return [f"{device} {option}: {', '.join(false)}"] * bool(false) + [
-        f"{device} {option}: {share:.1%}"] * (share < LEAST_SHARE)
-
-
-def check(device):
-    option = SOUND[device][0]
-    rows, seconds = verdicts_of(device, option)
-    tell(device, f"{option}, quiet", rows, seconds)
-    troubles = [f"{device} {option}, quiet: {name}" for name in named(rows, *FALSE)]
-    quiet = named(rows, *JUDGED).keys()
+def make_missing(runs, device, count):
+    options = SOUND[device]
+    if not runs.of(device, "quiet"):
+        runs.make(device, options[0], "quiet")
+    wanted = collections.Counter(options[run % len(options)] for run in range(count))
+    missing = wanted - collections.Counter(run["option"] for run in runs.of(device, "busy"))
     with busy(), concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
-        options = [SOUND[device][run % len(SOUND[device])] for run in range(RUNS)]
-        for found in pool.map(lambda one: busy_run(device, one, quiet), options):
-            troubles += found
-    return troubles
+        list(pool.map(lambda option: runs.make(device, option, "busy"), missing.elements()))
+
+
+def troubles_of(runs, device):
+    (quiet, *_), loaded = runs.of(device, "quiet"), runs.of(device, "busy")
+    shares = [len(quiet["judged"].keys() & run["judged"].keys()) / len(quiet["judged"]) for run in loaded]
+    least = f", at least {min(shares):.1%} of what the quiet one judged" if shares else ""
+    print(f"{device}: {len(loaded)} runs beside busy loops{least}")
+    return [f"{device} {run['option']}, {run['kind']}: {', '.join(run['false'])}"
+            for run in [quiet, *loaded] if run["false"]] + [
+                f"{device} {run['option']}: {share:.1%}" for run, share in zip(loaded, shares, strict=True)
+                if share < LEAST_SHARE]
 
 
 def main():
-    if unknown := [device for device in CHOSEN if device not in DEVICES]:
-        sys.exit(f"{', '.join(unknown)}: no such device; {', '.join(DEVICES)}")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("armjig", metavar="ARMJIG")
+    parser.add_argument("runs", metavar="RUNS", type=int, nargs="?", default=60, help="of each device; %(default)s")
+    parser.add_argument("devices", metavar="DEVICE", nargs="*", help=", ".join(DEVICES))
+    parser.add_argument("--log", metavar="FILE", type=pathlib.Path,
+                        help="of all runs; those of the same program that are there already count")
+    given = parser.parse_args()
+    if unknown := [device for device in given.devices if device not in DEVICES]:
+        parser.error(f"{', '.join(unknown)}: no such device; {', '.join(DEVICES)}")
     begun = time.time()
-    troubles = [trouble for device in CHOSEN for trouble in check(device)]
+    runs = Runs(given.armjig, given.log)
+    troubles = []
+    for device in given.devices or DEVICES:
+        make_missing(runs, device, given.runs)
+        troubles += troubles_of(runs, device)
     print(f"{time.time() - begun:.0f} s; " + ("; ".join(troubles) or "all well"))
     return 1 if troubles else 0
 

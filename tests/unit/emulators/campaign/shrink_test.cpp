@@ -118,6 +118,36 @@ TEST(Shrink, LeavesOutAllThatAreAlikeAtOnce) {
   EXPECT_LT(attempts, 3'000);
 }
 
+std::vector<std::vector<std::byte>> bytes_of_last(const Script& script, std::size_t count) {
+  std::vector<std::vector<std::byte>> last;
+  for (auto i = script.size() - std::min(script.size(), count); i < script.size(); ++i) {
+    last.push_back(script[i].bytes);
+  }
+  return last;
+}
+
+Duration length_between_last(const Script& script) {
+  return script.back().time - script[script.size() - 2].time;
+}
+
+/// Live each try takes as long as the script, and there is time for few.
+TEST(Shrink, CutsTheBeginningOfALongOneEarly) {
+  constexpr unsigned kKinds = 23;
+  constexpr std::size_t kMatter = 14;  // more than is tried after plain ones
+  Script script;
+  for (unsigned i = 0; i < 1'000; ++i) script.push_back(byte_at(i * 10ms, i % kKinds));
+  const auto end = bytes_of_last(script, kMatter);
+  Duration tried{};
+  const auto shorter = shrink(
+      script, {byte_at({}, 200)}, demo::make_dissector,
+      [&](const Script& one) {
+        tried += length_of(one);
+        return bytes_of_last(one, kMatter) == end && length_between_last(one) >= 10ms;
+      },
+      [&] { return tried < 12 * length_of(script); });
+  EXPECT_EQ(shorter.size(), kMatter);
+}
+
 /// Live each try takes as long as the script.
 TEST(Shrink, LooksForNothingAlikeWhereAllDiffer) {
   int attempts = 0;
