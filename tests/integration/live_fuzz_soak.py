@@ -67,9 +67,10 @@ def replayed(one, finding):
 
 
 def wrong_words(sentence):
-    """What the first thing is that it calls wrong, as `echo 0`; nothing where an answer is missing."""
+    """What the first thing is that it calls wrong, as `echo 0`; none where an answer is missing, or there is one too
+    many, so that any difference counts."""
     words = re.search(r" is answered with [^:]*: (.*) instead of ", sentence)
-    return words[1].split("; ")[0] if words else ""
+    return words[1].split("; ")[0].removeprefix("nothing") if words else ""
 
 
 def is_real(device, finding, sentence):
