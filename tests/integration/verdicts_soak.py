@@ -3,9 +3,9 @@
 """Whole suites on sound devices accuse none.
 
 Each device is hosted on its kind of link (a pseudo-terminal, TCP, a virtual I2C bus), with commands for hands, restarts
-and power cycles. A quiet run first, alone; then RUNS runs, four at a time beside two busy loops, of devices that are as
-fast or slow as sound ones may be. What fails, is flaky, or is in the way of the rig is false; of what the quiet run
-judged, each has to judge 97 %."""
+and power cycles. A quiet run of each first, alone; then RUNS runs of each, several at a time beside two busy loops, of
+devices that are as fast or slow as sound ones may be. What fails, is flaky, or is in the way of the rig is false; of
+what the quiet run judged, each has to judge 97 %."""
 
 import argparse
 import collections
@@ -13,6 +13,7 @@ import concurrent.futures
 import contextlib
 import datetime
 import hashlib
+import itertools
 import json
 import pathlib
 import subprocess
@@ -22,7 +23,6 @@ import time
 
 from hosted_devices import DEVICES, hosted, load
 
-AT_ONCE = 4
 BUSY_LOOPS = 2
 LEAST_SHARE = 0.97
 VERDICTS = {"judged": ("pass", "deviation"), "false": ("fail", "flaky", "error"), "open": ("inconclusive",)}
@@ -74,9 +74,9 @@ def verdicts_of(armjig, device, option):
 
 
 def told(rows, verdicts):
-    """Of each case with one of the verdicts what it says, that of one that passed is nothing."""
-    return {row["name"]: f"{row.get('expected', '')} / {row['actual']}" if "actual" in row else ""
-            for row in rows if row["verdict"] in verdicts}
+    """Of each case with one of the verdicts what it says."""
+    return {row["name"]: f"{row.get('expected', '')} / {row.get('actual', '')}" for row in rows
+            if row["verdict"] in verdicts}
 
 
 def tell(run):
@@ -99,14 +99,23 @@ def busy():
             loop.wait()
 
 
-def make_missing(runs, device, count):
+def missing(runs, device, count):
     options = SOUND[device]
-    if not runs.of(device, "quiet"):
-        runs.make(device, options[0], "quiet")
     wanted = collections.Counter(options[run % len(options)] for run in range(count))
-    missing = wanted - collections.Counter(run["option"] for run in runs.of(device, "busy"))
-    with busy(), concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
-        list(pool.map(lambda option: runs.make(device, option, "busy"), missing.elements()))
+    made = collections.Counter(run["option"] for run in runs.of(device, "busy"))
+    return [(device, option) for option in (wanted - made).elements()]
+
+
+def make_missing(runs, devices, count, at_once):
+    for device in devices:
+        if not runs.of(device, "quiet"):
+            runs.make(device, SOUND[device][0], "quiet")
+    # One of each device in turn, so that the ports share the machine.
+    in_turn = itertools.zip_longest(*(missing(runs, device, count) for device in devices))
+    todo = [one for some in in_turn for one in some if one]
+    if todo:
+        with busy(), concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+            list(pool.map(lambda one: runs.make(*one, "busy"), todo))
 
 
 def troubles_of(runs, device):
@@ -125,6 +134,7 @@ def main():
     parser.add_argument("armjig", metavar="ARMJIG")
     parser.add_argument("runs", metavar="RUNS", type=int, nargs="?", default=60, help="of each device; %(default)s")
     parser.add_argument("devices", metavar="DEVICE", nargs="*", help=", ".join(DEVICES))
+    parser.add_argument("--at-once", metavar="N", type=int, default=4, help="beside busy loops; %(default)s")
     parser.add_argument("--log", metavar="FILE", type=pathlib.Path,
                         help="of all runs; those of the same program that are there already count")
     given = parser.parse_args()
@@ -132,10 +142,9 @@ def main():
         parser.error(f"{', '.join(unknown)}: no such device; {', '.join(DEVICES)}")
     begun = time.time()
     runs = Runs(given.armjig, given.log)
-    troubles = []
-    for device in given.devices or DEVICES:
-        make_missing(runs, device, given.runs)
-        troubles += troubles_of(runs, device)
+    devices = given.devices or list(DEVICES)
+    make_missing(runs, devices, given.runs, given.at_once)
+    troubles = [trouble for device in devices for trouble in troubles_of(runs, device)]
     print(f"{time.time() - begun:.0f} s; " + ("; ".join(troubles) or "all well"))
     return 1 if troubles else 0
 
