@@ -31,6 +31,8 @@ class Doubt {
   /// How late answers of an emulated device come on such a link; none if that is not known.
   [[nodiscard]] std::optional<Duration> link() const noexcept { return link_; }
 
+  /// Whether the machine has more to do than it has processors.
+  [[nodiscard]] bool is_busy() const;
   /// Whether it may have come of time that link or machine took.
   [[nodiscard]] bool may_be_late(const Judgement& judgement) const;
 
@@ -39,7 +41,6 @@ class Doubt {
   [[nodiscard]] CaseResult settle(const Case& one, bool has_failed);
 
  private:
-  [[nodiscard]] bool is_busy() const;
   [[nodiscard]] bool is_moment(const Judgement& judgement) const noexcept;
   [[nodiscard]] bool must_fail_again(const CaseResult& result, bool has_failed) const;
   [[nodiscard]] bool is_over() const;

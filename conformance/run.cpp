@@ -20,8 +20,9 @@ namespace {
 /// So often a case is started on a machine that has no time for it.
 constexpr int kMostStarts = 3;
 
-/// So often a start state that may have been reached too late is tried again.
+/// So often in a row a start state that may have been reached too late is tried again.
 constexpr int kLateStarts = 2;
+constexpr int kLateStartsOnBusyMachine = 20;
 
 std::string in_us(Duration most) {
   return fmt::format("{} us at most", most / std::chrono::microseconds{1});
@@ -252,10 +253,14 @@ class Run {
       });
       bench_.begin(profile, options_.seed);
       bench_.bring_to(one.start);
-      if (bench_.judgement().verdict == Verdict::kPass) return std::nullopt;
+      if (bench_.judgement().verdict == Verdict::kPass) {
+        late_starts_.erase(one.start);
+        return std::nullopt;
+      }
       if (missed() != before || bench_.is_stopped()) return bench_.judgement();
-      const bool may_be_late = doubt_.may_be_late(bench_.judgement());
-      if (may_be_late && ++late_starts_[one.start] <= kLateStarts) return bench_.judgement();
+      if (doubt_.may_be_late(bench_.judgement()) && may_start_again(one.start)) {
+        return bench_.judgement();
+      }
       if (!killer_.empty() && bench_.judgement().verdict != Verdict::kSkipped) {
         return skipped(fmt::format(
             "{} ended or hung the device's program, and it has not come back", killer_));
@@ -269,6 +274,11 @@ class Run {
                      fmt::format("cannot reach its start, {}: {}", suite_.starts[one.start].name,
                                  wording_of(obstacle)),
                      obstacle.is_silence};
+  }
+
+  [[nodiscard]] bool may_start_again(std::uint8_t start) {
+    const auto most = doubt_.is_busy() ? kLateStartsOnBusyMachine : kLateStarts;
+    return ++late_starts_[start] <= most;
   }
 
   /// What is wrong with a device that cannot be brought to a start belongs to no case, and must not
@@ -427,7 +437,7 @@ class Run {
                [this](const Case& one) { return run_once(one, options_.profile); }};
   Report report_;
   std::map<std::uint8_t, Judgement> out_of_reach_;  ///< start states, and why
-  std::map<std::uint8_t, int> late_starts_;  ///< so often they may have been reached too late
+  std::map<std::uint8_t, int> late_starts_;  ///< so often in a row they may have been too late
   std::set<std::uint8_t> blamed_;            ///< those with a row of their own
   std::string killer_;         ///< the last case that ends or hangs the device's program
   int restarts_ = 0;           ///< of cases, because this process did not run
