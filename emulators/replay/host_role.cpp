@@ -440,7 +440,8 @@ class BusPlaying : public Playing {
 
   Result<void> pass_whole(std::vector<Part>& parts) {
     wait_until(parts.front().record.time);
-    const auto begin = port_.now();
+    // Of one transaction only its beginning is known; what lies between is as recorded.
+    const auto late = port_.now() - clock_.due(parts.front().record.time);
     std::vector<BusMessage> messages;
     for (auto& part : parts) {
       messages.push_back(part.is_read() ? read_from(part.address(), part.read)
@@ -449,9 +450,7 @@ class BusPlaying : public Playing {
     const auto done = port_.transfer(messages);
     Result<void> passed;
     for (auto& part : parts) {
-      // Of one transaction only its beginning is known; what lies between is as recorded.
-      part.record.time =
-          clock_.due(part.record.time) + (begin - clock_.due(parts.front().record.time));
+      part.record.time = clock_.due(part.record.time) + late;
       const bool is_done = done && *done == Transfer::kDone;
       if (is_done) {
         part.acks = std::string(1 + (part.is_read() ? 0 : part.record.bytes.size()), 'A');

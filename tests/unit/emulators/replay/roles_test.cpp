@@ -4,9 +4,11 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <ostream>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -22,6 +24,7 @@
 #include "harness/capture/trace.hpp"
 #include "harness/core/hex.hpp"
 #include "harness/files/user_file.hpp"
+#include "harness/link/transaction_bus.hpp"
 #include "harness/rig/guarded_ports.hpp"
 #include "harness/rig/kinovazed_judge.hpp"
 #include "harness/wire/kinovazed/dissector.hpp"
@@ -183,6 +186,37 @@ TEST(HostRole, ShiftsWhatFollowsALateRecordIfItIsToldTo) {
   const auto own = end(AfterLate::kAsRecorded) - at(20ms);
   EXPECT_LT(own, 1ms);
   EXPECT_GE(end(AfterLate::kShifted) - at(20ms), 5 * own);
+}
+
+/// As behind an operating system, opened a second ago; each transaction comes a little late.
+class Adapter final : public TransactionBus {
+ public:
+  static constexpr auto kLate = 3ms;
+
+  Result<Transfer> transfer(std::span<const BusMessage> /*messages*/) override {
+    return Transfer::kDone;
+  }
+  void wait_until(Instant time) override { now_ = std::max(now_, time + kLate); }
+  [[nodiscard]] Instant now() const override { return now_; }
+
+ private:
+  Instant now_ = at(1s);
+};
+
+TEST(HostRole, SaysOfEachPartOfATransactionWhenItPassed) {
+  Adapter bus;
+  std::vector<KeptRecord> records{written_at(10ms), written_at(20ms), written_at(23ms),
+                                  written_at(26ms)};
+  for (const auto place : {1U, 2U}) records[place].details = R"("stop":false)";
+  const auto played = play_host(bus, records, {});
+  ASSERT_TRUE(played);
+  std::vector<std::chrono::milliseconds> late;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    late.push_back(
+        duration_cast<std::chrono::milliseconds>(played->actual.at(i).time - records[i].time));
+  }
+  // The first one was due when the bus was opened.
+  EXPECT_EQ(late, (std::vector{0ms, Adapter::kLate, Adapter::kLate, Adapter::kLate}));
 }
 
 TEST(HostRole, LeavesAConnectionThatANewOneReplacesAsItsGuardIsTold) {
