@@ -371,25 +371,41 @@ class Campaign {
       pass_over(symptom, fmt::format(", since case {}", number));
       return start_again();
     }
-    auto short_one = *always ? Outcome<Script>{script} : made_short(script, symptom);
-    if (!short_one) return give_up(short_one.error());
-    auto is_sure =
-        *always ? Outcome<bool>{false} : shows_surely(*short_one, Symptom{*last_seen_.symptom});
-    if (!is_sure) return give_up(is_sure.error());
-    if (!*is_sure) {  // rather long than wrong
-      short_one = std::move(script);
-      last_seen_ = std::move(seen_first);
-    }
-    complete(finding, *short_one);
+    auto is_short =
+        *always ? Outcome<std::optional<Script>>{std::nullopt} : made_surely_short(script, symptom);
+    if (!is_short) return give_up(is_short.error());
+    auto& short_one = *is_short;
+    if (!short_one) last_seen_ = std::move(seen_first);
+    complete(finding, short_one ? *short_one : script);
     excuse(finding);
     excuse(symptom, symptom.asked);
-    if (*is_sure) {
+    if (short_one) {
       if (auto noted = note_what_shows(finding, *short_one); !noted) return noted;
     }
     state_.findings.push_back(std::move(finding));
     state_.causes = causes_of(state_.findings).size();
     if (listener_.on_finding) listener_.on_finding(state_);
     return start_again();
+  }
+
+  /// The shortest of those that it was made into, one after the other, that shows it as often as it
+  /// takes to be sure: where a moment has a part in it, a shorter one may show it now and then.
+  /// None: rather long than wrong.
+  [[nodiscard]] Outcome<std::optional<Script>> made_surely_short(const Script& script,
+                                                                 const Symptom& symptom) {
+    shown_.clear();
+    note_shown(script);
+    if (auto short_one = made_short(script, symptom); !short_one) {
+      return tl::unexpected{short_one.error()};
+    }
+    for (std::size_t back = 1; back <= shown_.size(); back *= 2) {
+      const auto& [shorter, seen] = shown_[shown_.size() - back];
+      auto is_sure = shows_surely(shorter, seen);
+      if (!is_sure) return tl::unexpected{is_sure.error()};
+      if (*is_sure) return shorter;
+      if (options_.must_stop()) break;
+    }
+    return std::nullopt;
   }
 
   /// With that symptom; or, if it stays long so, with one of another answer that is wrong in the
@@ -416,12 +432,21 @@ class Campaign {
       ++attempts;
       auto is_there = shows(other, is_it);
       if (!is_there && !is_refusal(is_there.error())) failure = is_there.error();
-      return is_there && *is_there;
+      if (!is_there || !*is_there) return false;
+      note_shown(other);
+      return true;
     };
     auto short_one = shrink(std::move(script), material_.harmless, material_.make_dissector,
                             shows_it, may_go_on);
     if (failure) return tl::unexpected{*failure};
     return short_one;
+  }
+
+  /// What `last_seen_` is of.
+  void note_shown(const Script& script) {
+    constexpr std::size_t kMostKept = 64;
+    shown_.emplace_back(script, *last_seen_.symptom);
+    if (shown_.size() > kMostKept) shown_.pop_front();
   }
 
   /// `last_seen_` is of the shortest script that showed it.
@@ -514,6 +539,7 @@ class Campaign {
   std::deque<Script> history_;  ///< the last cases since the last reset
   std::uint64_t doubts_ = 0;    ///< that there were
   Seen last_seen_;
+  std::deque<std::pair<Script, Symptom>> shown_;  ///< while one is made short, the last ones
   WallClock::time_point begun_ = WallClock::now();
   Duration passed_before_ = state_.passed;
 };

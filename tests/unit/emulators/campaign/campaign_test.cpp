@@ -314,6 +314,52 @@ TEST(Campaign, FindsNothingInWhatASoundDeviceShowsInTheSamePlace) {
   }
 }
 
+/// What shows something shows it every other time, if it has no more records than that.
+class RacingStage final : public Stage {
+ public:
+  RacingStage(std::unique_ptr<Stage> stage, std::unique_ptr<Stage> sound, std::size_t most)
+      : stage_{std::move(stage)}, sound_{std::move(sound)}, most_{most} {}
+  Outcome<void> reset() override {
+    return stage_->reset().and_then([this] { return sound_->reset(); });
+  }
+  [[nodiscard]] bool can_reset() const override { return true; }
+  Outcome<void> renew_models() override { return stage_->renew_models(); }
+  Outcome<BothHeard> play(const Script& script) override {
+    const bool is_lucky = script.size() <= most_ && ++plays_ % 2 == 0;
+    return (is_lucky ? sound_ : stage_)->play(script);
+  }
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Stage> sound_;
+  std::size_t most_;
+  int plays_ = 0;
+};
+
+TEST(Campaign, MakesAFindingAsShortAsItIsSure) {
+  constexpr std::size_t kMost = 6;
+  const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
+  const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
+  const auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
+  const auto stage_of = [&](const RigOptions& target) {
+    return cli::stage_of(device, target, device, emulated(""), Hand{}, 20ms);
+  };
+  RacingStage stage{stage_of(faulty), stage_of(emulated("")), kMost};
+  CampaignState state;
+  const CampaignOptions options{.most_cases = 40,
+                                .judging = {device.make_dissector, {}, 20ms},
+                                .confirmations = 3,
+                                .most_shrinking = 1h,
+                                .stops_at_first = true};
+  ASSERT_TRUE(run_campaign(stage, material, options, state, {}));
+  ASSERT_FALSE(state.findings.empty());
+  const auto& finding = state.findings.front();
+  EXPECT_GT(finding.script.size(), kMost);
+  EXPECT_LE(finding.script.size(), 2 * kMost);
+  EXPECT_GT(finding.found_size, 4 * kMost) << "it was long";
+  EXPECT_FALSE(finding.shows.empty());
+}
+
 TEST(Campaign, PlaysOfACaseNoMoreThanIsPermitted) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
   const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
