@@ -5,10 +5,12 @@
 #include <array>
 #include <chrono>
 #include <functional>
+#include <span>
 #include <thread>
 #include <utility>
 
 #include "emulators/sessions/dice.hpp"
+#include "harness/link/transaction_bus.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -41,6 +43,25 @@ bool greet(SessionSource& server) {
   return true;
 }
 bool greet(Endpoint& /*port*/) { return true; }
+
+/// A bus as it is reached through an operating system.
+class WholeTransactions final : public TransactionBus {
+ public:
+  explicit WholeTransactions(BusPort& inner) : inner_{inner} {}
+  [[nodiscard]] Result<Transfer> transfer(std::span<const BusMessage> messages) override {
+    return inner_.transfer(messages);
+  }
+  void wait_until(Instant time) override { inner_.wait_until(time); }
+  [[nodiscard]] Instant now() const override { return inner_.now(); }
+
+ private:
+  BusPort& inner_;
+};
+
+/// A port as that of a live target is.
+StreamPort& as_live(StreamPort& port) { return port; }
+SessionSource& as_live(SessionSource& server) { return server; }
+WholeTransactions as_live(BusPort& port) { return WholeTransactions{port}; }
 
 Duration lateness_of(const Script& script, const std::vector<Instant>& passed) {
   Duration latest{};
@@ -240,7 +261,8 @@ Outcome<BothHeard> StageOn<Port>::play_to_stand_in(const Script& script, std::ui
   sessions::Dice dice{seed};
   rest(stand_in->port(), delay_up_to(kMostPhase, dice));
   const auto delay = [&] { return delay_up_to(dice.one_in(kFewAre) ? 5ms : 1ms, dice); };
-  auto played = in_order(play_host(stand_in->port(), unevenly(script, delay), setup_.how));
+  auto&& live = as_live(stand_in->port());
+  auto played = in_order(play_host(live, unevenly(script, delay), setup_.how));
   if (played) played->passed = times_of(script);
   return beside(*models, script, std::move(played));
 }

@@ -121,6 +121,26 @@ TEST(Stage, GivesAStandInAllAsUnevenlyAsALinkDoes) {
   }
 }
 
+/// Nobody can tell then which part of a transaction was refused.
+TEST(Stage, ReachesAStandInByWholeTransactions) {
+  const auto to_nobody = [](Duration time, Direction direction, std::string details) {
+    return KeptRecord{.time = at(time),
+                      .kind = LinkKind::kBus,
+                      .direction = direction,
+                      .id = 0x50,
+                      .details = std::move(details)};
+  };
+  const Live nodes{"morap", "i2c:/dev/nowhere"};
+  const Script both{to_nobody(10ms, Direction::kToDevice, R"("stop":false)"),
+                    to_nobody(13ms, Direction::kFromDevice, R"("n":1)")};
+  const auto heard = nodes.heard(both, 1);
+  const auto count = [](const std::vector<KeptRecord>& said) {
+    return std::ranges::count(said, 0x50U, &KeptRecord::id);
+  };
+  EXPECT_EQ(count(heard.target.said), 1);
+  EXPECT_EQ(count(heard.models.front().said), 2);
+}
+
 /// Frames that come 6 ms apart come 5 or 7 ms apart to some, while a joint moves by 3 steps a
 /// millisecond.
 TEST(Stage, HasModelsThatDifferWhereItMattersHowFarApartMessagesCame) {
