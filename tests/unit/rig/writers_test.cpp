@@ -148,6 +148,7 @@ const std::vector<Step>& steps() {
          "the same bus, to the pen on it, by way of the bench"},
         {"emulators/memory/impaired.cpp", "hands on to an emulated bus what is left"},
         {"emulators/memory/overheard.cpp", "hands on what a program writes to an emulated bus"},
+        {"emulators/campaign/stage.cpp", "to the emulated bus of a stand-in"},
         {"emulators/replay/perturbed.cpp", "hands it on, too, or not"},
         {"emulators/replay/recorded_host.cpp", "to an emulated bus"},
         {"emulators/shadow/shadow.cpp", "to an emulated bus"},

@@ -38,13 +38,18 @@ RigOptions emulated(const std::string& options) {
   return rig;
 }
 
+/// Of a target beside a sound one, both emulated.
+std::unique_ptr<Stage> stage_of(const cli::Device& device, const RigOptions& target) {
+  return cli::stage_of(device, target, device, emulated(""), Hand{}, 20ms);
+}
+
 /// A campaign against an emulated device with that fault, in virtual time.
 CampaignState run(const Asked& asked) {
   const auto& device = **cli::find_device(cli::shipped_devices(), asked.device);
   const auto target = emulated(asked.fault.empty() ? "" : "?fault=" + asked.fault);
   const auto model = emulated("");
   const auto material = cli::material_of(device, target, model, 20s).value();
-  const auto stage = cli::stage_of(device, target, device, model, Hand{}, 20ms);
+  const auto stage = stage_of(device, target);
   CampaignState state;
   const CampaignOptions options{.seed = asked.seed,
                                 .most_cases = asked.cases,
@@ -120,7 +125,7 @@ class KeepingStage final : public Stage {
 std::vector<Script> played_with(WhenSurvey when, std::uint64_t cases) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
   const auto material = cli::material_of(device, emulated(""), emulated(""), 1s).value();
-  KeepingStage stage{cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms)};
+  KeepingStage stage{stage_of(device, emulated(""))};
   CampaignState state;
   const CampaignOptions options{
       .most_cases = cases, .judging = {device.make_dissector, {}, 20ms}, .when_survey = when};
@@ -203,8 +208,7 @@ TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
   for (const bool can_reset : {true, false}) {
     const auto faulty = emulated("?fault=quirk:steps-lost");
     auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
-    RefusingStage stage{cli::stage_of(device, faulty, device, emulated(""), Hand{}, 20ms),
-                        can_reset};
+    RefusingStage stage{stage_of(device, faulty), can_reset};
     CampaignState state;
     const CampaignOptions options{.most_cases = 30, .judging = {device.make_dissector, {}, 20ms}};
     const auto done = run_campaign(stage, material, options, state, {});
@@ -257,7 +261,7 @@ TEST(Campaign, KeepsTheTimeBeforeAnEndWhenItMakesAFindingShort) {
   const auto faulty = emulated("?fault=missing:Accepted");
   auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
   material.spacing.around_ends = 100ms;
-  const auto stage = cli::stage_of(device, faulty, device, emulated(""), Hand{}, 20ms);
+  const auto stage = stage_of(device, faulty);
   CampaignState state;
   const CampaignOptions options{
       .most_cases = 10, .judging = {device.make_dissector, {}, 20ms}, .most_shrinking = 1h};
@@ -297,11 +301,9 @@ TEST(Campaign, FindsNothingInWhatASoundDeviceShowsInTheSamePlace) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
   const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
   const auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
-  const auto stage_of = [&](const RigOptions& target) {
-    return cli::stage_of(device, target, device, emulated(""), Hand{}, 20ms);
-  };
   for (const bool is_of_link : {true, false}) {
-    StandInStage stage{stage_of(faulty), stage_of(is_of_link ? faulty : emulated(""))};
+    StandInStage stage{stage_of(device, faulty),
+                       stage_of(device, is_of_link ? faulty : emulated(""))};
     CampaignState state;
     const CampaignOptions options{.most_cases = 40,
                                   .judging = {device.make_dissector, {}, 20ms},
@@ -341,10 +343,7 @@ TEST(Campaign, MakesAFindingAsShortAsItIsSure) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
   const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
   const auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
-  const auto stage_of = [&](const RigOptions& target) {
-    return cli::stage_of(device, target, device, emulated(""), Hand{}, 20ms);
-  };
-  RacingStage stage{stage_of(faulty), stage_of(emulated("")), kMost};
+  RacingStage stage{stage_of(device, faulty), stage_of(device, emulated("")), kMost};
   CampaignState state;
   const CampaignOptions options{.most_cases = 40,
                                 .judging = {device.make_dissector, {}, 20ms},
@@ -366,7 +365,7 @@ TEST(Campaign, PlaysOfACaseNoMoreThanIsPermitted) {
   for (const bool is_nothing_permitted : {true, false}) {
     auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
     if (is_nothing_permitted) material.permit_case = [](Script& script) { script.clear(); };
-    const auto stage = cli::stage_of(device, faulty, device, emulated(""), Hand{}, 20ms);
+    const auto stage = stage_of(device, faulty);
     CampaignState state;
     const CampaignOptions options{.most_cases = 40,
                                   .judging = {device.make_dissector, {}, 20ms},
@@ -458,7 +457,7 @@ TEST(Campaign, PlaysAgainNoMoreThanTheLastCases) {
   constexpr std::size_t kCases = 4;
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
   auto material = cli::material_of(device, emulated(""), emulated(""), 1s).value();
-  OnceSilentStage stage{cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms)};
+  OnceSilentStage stage{stage_of(device, emulated(""))};
   CampaignState state;
   const CampaignOptions options{.most_cases = 60,
                                 .judging = {device.make_dissector, {}, 20ms},
@@ -497,7 +496,7 @@ CampaignState run_elsewhere(const std::string& fault, bool knows_what_strays) {
   const auto target = emulated("?to-switch=9000,5000,7000,4000,3000,8000" + fault);
   auto material = cli::material_of(device, target, emulated(""), 3s).value();
   if (!knows_what_strays) material.astray_fields = {};
-  OnceBegunStage stage{cli::stage_of(device, target, device, emulated(""), Hand{}, 20ms)};
+  OnceBegunStage stage{stage_of(device, target)};
   CampaignState state;
   const CampaignOptions options{
       .most_cases = 60,
@@ -579,8 +578,7 @@ class SilentStage final : public Stage {
 CampaignState state_after_change(std::unique_ptr<Stage> (*make_changed)(const cli::Device&)) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
   auto material = cli::material_of(device, emulated(""), emulated(""), 1s).value();
-  ChangingStage stage{cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms),
-                      make_changed(device)};
+  ChangingStage stage{stage_of(device, emulated("")), make_changed(device)};
   CampaignState state;
   const CampaignOptions options{
       .most_cases = 10, .judging = {device.make_dissector, {}, 20ms}, .confirmations = 3};
@@ -601,8 +599,7 @@ TEST(Campaign, SaysNothingOfWhatStaysDifferentOnADeviceThatNobodyCanStartAgain) 
 
 TEST(Campaign, TellsOfADeviceThatIsSilentForGood) {
   const auto state = state_after_change([](const cli::Device& device) -> std::unique_ptr<Stage> {
-    return std::make_unique<SilentStage>(
-        cli::stage_of(device, emulated(""), device, emulated(""), Hand{}, 20ms));
+    return std::make_unique<SilentStage>(stage_of(device, emulated("")));
   });
   EXPECT_FALSE(state.findings.empty());
   EXPECT_TRUE(state.passed_over.empty());
