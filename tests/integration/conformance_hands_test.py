@@ -162,10 +162,20 @@ def check_bus(armjig, path):
     return f"{len(verdicts)} cases at ticks"
 
 
+def check_slow_hand(armjig, path):
+    """What a server misses before it hears a command, because a hand takes its time, is no fault of the server's."""
+    with emulated_with_hands(armjig, path, "kinovazed") as (folder, target, hand):
+        slow = folder.script("slow", f'#!/bin/sh\n"{hand}" "$@" && sleep 0.05\n')
+        case = "kinovazed.death.retract-read"
+        verdicts, out = folder.verdicts("kinovazed", target, case, "--hand", slow, "--restart", f"{hand} restart 1")
+        assert verdicts == {case: "inconclusive"} and "takes longer than the server to look" in out, out
+    return "a slow hand is known"
+
+
 def main(armjig):
     with contextlib.ExitStack() as folders, concurrent.futures.ThreadPoolExecutor() as pool:
         runs = [pool.submit(check, armjig, folders.enter_context(tempfile.TemporaryDirectory()))
-                for check in (check_restart, check_hand, check_bus)]
+                for check in (check_restart, check_hand, check_slow_hand, check_bus)]
         for run in runs:
             print(run.result())
 
