@@ -112,10 +112,10 @@ def make_missing(runs, devices, count, at_once):
             runs.make(device, SOUND[device][0], "quiet")
     # One of each device in turn, so that the ports share the machine.
     in_turn = itertools.zip_longest(*(missing(runs, device, count) for device in devices))
-    todo = [one for some in in_turn for one in some if one]
-    if todo:
+    wanted = [one for some in in_turn for one in some if one]
+    if wanted:
         with busy(), concurrent.futures.ThreadPoolExecutor(at_once) as pool:
-            list(pool.map(lambda one: runs.make(*one, "busy"), todo))
+            list(pool.map(lambda one: runs.make(*one, "busy"), wanted))
 
 
 def troubles_of(runs, device):

@@ -188,7 +188,7 @@ TEST(HostRole, ShiftsWhatFollowsALateRecordIfItIsToldTo) {
   EXPECT_GE(end(AfterLate::kShifted) - at(20ms), 5 * own);
 }
 
-/// As behind an operating system, opened a second ago; each transaction comes a little late.
+/// As an operating system gives it, opened a second ago; each transaction comes a little late.
 class Adapter final : public TransactionBus {
  public:
   static constexpr auto kLate = 3ms;
