@@ -65,10 +65,14 @@ class PortBench : public Bench {
              .append(input));
   }
 
-  /// The same; false where nobody can.
+  /// The same; false where nobody can. Hands take their time, so there is a sign of life after each
+  /// input. After a longer silence than a supervisor bears with the case is given up.
   [[nodiscard]] bool reach(std::string_view input, std::int64_t value) {
-    return port().touch(input, value) ||
-           (this->hand().has(input) && this->hand().set(input, value));
+    if (port().touch(input, value)) return true;
+    if (!this->hand().has(input)) return false;
+    const bool is_set = this->hand().set(input, value);
+    if (is_stopped()) judge_stop();
+    return is_set;
   }
 
   /// Whether something was done at the port. What the guard does not allow skips the case; what it

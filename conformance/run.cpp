@@ -31,6 +31,10 @@ std::string in_us(Duration most) {
 constexpr std::string_view kStopped = "the run was interrupted";
 constexpr std::string_view kTimeIsUp = "the time of the run was up";
 
+constexpr std::string_view kDidNotRun = "this process did not run all the time";
+constexpr std::string_view kWasStopped =
+    "the device was stopped for want of a sign of life from here";
+
 /// One run over a suite.
 class Run {
  public:
@@ -84,15 +88,15 @@ class Run {
       const auto before = missed();
       if (std::exchange(missed_before_, before) != before || bench_.is_stopped()) bench_.resume();
       auto found = find();
-      if (is_good(found)) {
-        is_disturbed_ = false;
-        return found;
-      }
-      is_disturbed_ = missed() != before;
-      const bool counts = !is_disturbed_ && !bench_.is_stopped();
-      if (counts || bench_.error() || start == kMostStarts) return found;
+      disturbance_ = is_good(found) ? "" : disturbance_since(before);
+      if (disturbance_.empty() || bench_.error() || start == kMostStarts) return found;
       ++restarts_;
     }
+  }
+
+  [[nodiscard]] std::string_view disturbance_since(Duration missed_before) const {
+    if (missed() != missed_before) return kDidNotRun;
+    return bench_.is_stopped() ? kWasStopped : "";
   }
 
   [[nodiscard]] Duration missed() const {
@@ -216,10 +220,11 @@ class Run {
                       // What neither link nor hands can do does not depend on time.
                       return each.judgement.verdict == Verdict::kPass || each.judgement.is_left_out;
                     });
-    if (is_disturbed_ && !bench_.error()) {
-      result.judgement = {Verdict::kInconclusive,
-                          {},
-                          "this process did not run all the time, whenever it was started"};
+    const bool says_why =
+        disturbance_ == kWasStopped && result.judgement.verdict == Verdict::kSkipped;
+    if (!disturbance_.empty() && !bench_.error() && !says_why) {
+      result.judgement = {
+          Verdict::kInconclusive, {}, fmt::format("{}, whenever it was started", disturbance_)};
     }
     return result;
   }
@@ -439,10 +444,10 @@ class Run {
   std::map<std::uint8_t, Judgement> out_of_reach_;  ///< start states, and why
   std::map<std::uint8_t, int> late_starts_;  ///< so often in a row they may have been too late
   std::set<std::uint8_t> blamed_;            ///< those with a row of their own
-  std::string killer_;         ///< the last case that ends or hangs the device's program
-  int restarts_ = 0;           ///< of cases, because this process did not run
-  Duration missed_before_{};   ///< what was found last
-  bool is_disturbed_ = false;  ///< what was found last says nothing
+  std::string killer_;            ///< the last case that ends or hangs the device's program
+  int restarts_ = 0;              ///< of cases, because this process did not run
+  Duration missed_before_{};      ///< what was found last
+  std::string_view disturbance_;  ///< why what was found last says nothing; empty: it does
   bool is_alive_ = false;
   bool has_failed_ = false;
 };

@@ -41,6 +41,10 @@ void moves_on(Bench& bench) {
   device.is_stopped_now = true;
   bench.give_up("nobody watches over the arm any more");
 }
+void takes_stop_for_fault(Bench& bench) {
+  number(bench).is_stopped_now = true;
+  bench.fail("an arm that moves", "one that stands");
+}
 void is_late(Bench& bench) {
   auto& device = number(bench);
   device.ran.emplace_back("late");
@@ -81,6 +85,7 @@ constexpr Requirement kRequirements[] = {
     {"n.beyond", Level::kMust, "It can be reached.", "here"},
     {"n.moves", Level::kMust, "It moves.", "here"},
     {"n.watched", Level::kMust, "It is watched.", "here"},
+    {"n.unseen", Level::kMust, "It moves on.", "here"},
 };
 
 constexpr Case kCases[] = {
@@ -92,6 +97,7 @@ constexpr Case kCases[] = {
     {.requirement = "n.quiet", .rule = "r", .run = is_quiet_once, .tier = Tier::kFull},
     {.requirement = "n.skips", .rule = "r", .run = skips},
     {.requirement = "n.watched", .rule = "r", .run = moves_on},
+    {.requirement = "n.unseen", .rule = "r", .run = takes_stop_for_fault},
     {.requirement = "n.beyond", .variant = "a", .rule = "r", .run = passes, .start = 2},
     {.requirement = "n.beyond", .variant = "b", .rule = "r", .run = passes, .start = 2},
     {.requirement = "n.late", .rule = "r", .run = is_late},
@@ -176,8 +182,8 @@ TEST(ConformanceRun, SkipsWhatIsLeftWhenItIsStopped) {
   const auto rows = verdicts(report);
   EXPECT_EQ(rows[0], "n.pass pass");
   EXPECT_EQ(rows[1], "n.fail skipped") << "it was under way, so nobody knows what it shows";
-  EXPECT_EQ(report.count(Verdict::kSkipped), 13U) << "and each of the others is named";
-  EXPECT_EQ(report.rows.size(), 14U);
+  EXPECT_EQ(report.count(Verdict::kSkipped), 14U) << "and each of the others is named";
+  EXPECT_EQ(report.rows.size(), 15U);
   EXPECT_THAT(report.rows.back().actual, HasSubstr("interrupted"));
 }
 
@@ -345,6 +351,12 @@ TEST(ConformanceRun, LetsTheNextCaseMoveAfterOneThatASupervisorStoppedEachTime) 
   bench.supervisors_left = 3;
   EXPECT_THAT(verdicts(run(bench, "n.watched", {})), ElementsAre("n.watched skipped"));
   EXPECT_THAT(verdicts(run(bench, "n.watched", {})), ElementsAre("n.watched pass"));
+}
+
+TEST(ConformanceRun, AccusesNoDeviceThatASupervisorStoppedEachTime) {
+  const auto report = run("n.unseen");
+  EXPECT_THAT(verdicts(report), ElementsAre("n.unseen inconclusive"));
+  EXPECT_THAT(report.rows.front().actual, HasSubstr("want of a sign of life"));
 }
 
 TEST(ConformanceRun, SkipsWhatNeedsAHandAlsoIfItDidNotWatch) {
