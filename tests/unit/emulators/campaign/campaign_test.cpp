@@ -17,6 +17,7 @@
 #include "cli/fuzz_material.hpp"
 #include "emulators/campaign/folder.hpp"
 #include "tests/unit/emulators/campaign/live_material.hpp"
+#include "tests/unit/emulators/campaign/stages.hpp"
 
 namespace armjig::campaign {
 namespace {
@@ -61,6 +62,17 @@ CampaignState run(const Asked& asked) {
   return state;
 }
 
+/// As far as the first finding, which is made as short as can be.
+CampaignOptions until_first(const cli::Device& device) {
+  return {.most_cases = 40,
+          .judging = {device.make_dissector, {}, 20ms},
+          .most_shrinking = 1h,
+          .stops_at_first = true};
+}
+
+/// Shows soon, in counters.
+constexpr auto kFaulty = "?fault=quirk:counters-reset-by-clear";
+
 TEST(Campaign, FindsNothingInASoundDevice) {
   for (const auto& device : cli::shipped_devices()) {
     const auto state = run({std::string{device.name}, "", 30});
@@ -103,24 +115,6 @@ TEST(Campaign, PlaysTheSameCasesForTheSameSeed) {
   EXPECT_EQ(one.findings.front().script, other.findings.front().script);
   EXPECT_EQ(one.shown.answers(), other.shown.answers());
 }
-
-/// Keeps what is played.
-class KeepingStage final : public Stage {
- public:
-  explicit KeepingStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
-  Outcome<void> reset() override { return stage_->reset(); }
-  [[nodiscard]] bool can_reset() const override { return true; }
-  Outcome<void> renew_models() override { return stage_->renew_models(); }
-  Outcome<BothHeard> play(const Script& script) override {
-    played.push_back(script);
-    return stage_->play(script);
-  }
-
-  std::vector<Script> played;
-
- private:
-  std::unique_ptr<Stage> stage_;
-};
 
 std::vector<Script> played_with(WhenSurvey when, std::uint64_t cases) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "morap");
@@ -166,42 +160,6 @@ TEST(Campaign, FindsNothingInANodeWhoseFaultChangesNothing) {
   const auto state = run({"morap", "out:stuck:own_address.own_address", 40});
   EXPECT_TRUE(state.findings.empty()) << state.findings.front().sentence;
 }
-
-/// Somewhere where nobody is.
-class NobodyThere final : public Stage {
- public:
-  Outcome<void> reset() override { return {}; }
-  [[nodiscard]] bool can_reset() const override { return false; }
-  Outcome<void> renew_models() override { return {}; }
-  Outcome<BothHeard> play(const Script& script) override {
-    BothHeard heard;
-    auto& model = heard.models.emplace_back();
-    for (const auto& record : script) {
-      if (record.direction == Direction::kFromDevice) model.said.push_back(record);
-    }
-    return heard;
-  }
-};
-
-/// In virtual time, but that the guard ends what is played now and then.
-class RefusingStage final : public Stage {
- public:
-  RefusingStage(std::unique_ptr<Stage> stage, bool can_reset)
-      : stage_{std::move(stage)}, can_reset_{can_reset} {}
-  Outcome<void> reset() override { return stage_->reset(); }
-  [[nodiscard]] bool can_reset() const override { return can_reset_; }
-  Outcome<void> renew_models() override { return stage_->renew_models(); }
-  Outcome<BothHeard> play(const Script& script) override {
-    constexpr int kOften = 3;
-    if (++times_ % kOften == 1) return problem(ErrorCode::kForbidden, "it", "was refused");
-    return stage_->play(script);
-  }
-
- private:
-  std::unique_ptr<Stage> stage_;
-  bool can_reset_;
-  int times_ = 0;
-};
 
 TEST(Campaign, GoesOnAfterTheGuardEndedACase) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
@@ -279,77 +237,31 @@ TEST(Campaign, KeepsTheTimeBeforeAnEndWhenItMakesAFindingShort) {
   EXPECT_TRUE(is_any_shorter);
 }
 
-/// With a device of its own in the place of the target.
-class StandInStage final : public Stage {
- public:
-  StandInStage(std::unique_ptr<Stage> stage, std::unique_ptr<Stage> stand_in)
-      : stage_{std::move(stage)}, stand_in_{std::move(stand_in)} {}
-  Outcome<void> reset() override { return stage_->reset(); }
-  [[nodiscard]] bool can_reset() const override { return stage_->can_reset(); }
-  Outcome<void> renew_models() override { return stage_->renew_models(); }
-  Outcome<BothHeard> play(const Script& script) override { return stage_->play(script); }
-  Outcome<BothHeard> play_to_stand_in(const Script& script, std::uint64_t /*seed*/) override {
-    return stand_in_->reset().and_then([&] { return stand_in_->play(script); });
-  }
-
- private:
-  std::unique_ptr<Stage> stage_;
-  std::unique_ptr<Stage> stand_in_;
-};
-
 TEST(Campaign, FindsNothingInWhatASoundDeviceShowsInTheSamePlace) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
-  const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
+  const auto faulty = emulated(kFaulty);
   const auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
   for (const bool is_of_link : {true, false}) {
     StandInStage stage{stage_of(device, faulty),
                        stage_of(device, is_of_link ? faulty : emulated(""))};
     CampaignState state;
-    const CampaignOptions options{.most_cases = 40,
-                                  .judging = {device.make_dissector, {}, 20ms},
-                                  .doubts = 1,
-                                  .most_shrinking = 1h,
-                                  .stops_at_first = true};
+    auto options = until_first(device);
+    options.doubts = 1;
     ASSERT_TRUE(run_campaign(stage, material, options, state, {}));
     EXPECT_EQ(state.findings.empty(), is_of_link);
     EXPECT_EQ(state.unsettled > 0, is_of_link);
   }
 }
 
-/// What shows something shows it every other time, if it has no more records than that.
-class RacingStage final : public Stage {
- public:
-  RacingStage(std::unique_ptr<Stage> stage, std::unique_ptr<Stage> sound, std::size_t most)
-      : stage_{std::move(stage)}, sound_{std::move(sound)}, most_{most} {}
-  Outcome<void> reset() override {
-    return stage_->reset().and_then([this] { return sound_->reset(); });
-  }
-  [[nodiscard]] bool can_reset() const override { return true; }
-  Outcome<void> renew_models() override { return stage_->renew_models(); }
-  Outcome<BothHeard> play(const Script& script) override {
-    const bool is_lucky = script.size() <= most_ && ++plays_ % 2 == 0;
-    return (is_lucky ? sound_ : stage_)->play(script);
-  }
-
- private:
-  std::unique_ptr<Stage> stage_;
-  std::unique_ptr<Stage> sound_;
-  std::size_t most_;
-  int plays_ = 0;
-};
-
 TEST(Campaign, MakesAFindingAsShortAsItIsSure) {
   constexpr std::size_t kMost = 6;
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
-  const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
+  const auto faulty = emulated(kFaulty);
   const auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
   RacingStage stage{stage_of(device, faulty), stage_of(device, emulated("")), kMost};
   CampaignState state;
-  const CampaignOptions options{.most_cases = 40,
-                                .judging = {device.make_dissector, {}, 20ms},
-                                .confirmations = 3,
-                                .most_shrinking = 1h,
-                                .stops_at_first = true};
+  auto options = until_first(device);
+  options.confirmations = 3;
   ASSERT_TRUE(run_campaign(stage, material, options, state, {}));
   ASSERT_FALSE(state.findings.empty());
   const auto& finding = state.findings.front();
@@ -361,16 +273,13 @@ TEST(Campaign, MakesAFindingAsShortAsItIsSure) {
 
 TEST(Campaign, PlaysOfACaseNoMoreThanIsPermitted) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
-  const auto faulty = emulated("?fault=quirk:counters-reset-by-clear");
+  const auto faulty = emulated(kFaulty);
   for (const bool is_nothing_permitted : {true, false}) {
     auto material = cli::material_of(device, faulty, emulated(""), 20s).value();
     if (is_nothing_permitted) material.permit_case = [](Script& script) { script.clear(); };
     const auto stage = stage_of(device, faulty);
     CampaignState state;
-    const CampaignOptions options{.most_cases = 40,
-                                  .judging = {device.make_dissector, {}, 20ms},
-                                  .most_shrinking = 1h,
-                                  .stops_at_first = true};
+    const auto options = until_first(device);
     ASSERT_TRUE(run_campaign(*stage, material, options, state, {}));
     EXPECT_EQ(state.findings.empty(), is_nothing_permitted);
   }
@@ -407,52 +316,6 @@ TEST(Campaign, GoesOnWithTheVeryScriptsThatItKept) {
   }
 }
 
-/// A sound device that becomes another one for good, and that nobody can start again.
-class ChangingStage final : public Stage {
- public:
-  ChangingStage(std::unique_ptr<Stage> before, std::unique_ptr<Stage> after)
-      : before_{std::move(before)}, after_{std::move(after)} {}
-  Outcome<void> reset() override {
-    if (std::exchange(was_begun_, true)) return {};
-    return before_->reset().and_then([this] { return after_->reset(); });
-  }
-  [[nodiscard]] bool can_reset() const override { return false; }
-  Outcome<void> renew_models() override { return {}; }
-  Outcome<BothHeard> play(const Script& script) override {
-    constexpr int kSound = 4;
-    return (++times_ > kSound ? after_ : before_)->play(script);
-  }
-
- private:
-  std::unique_ptr<Stage> before_;
-  std::unique_ptr<Stage> after_;
-  bool was_begun_ = false;
-  int times_ = 0;
-};
-
-/// Of a sound device that nobody can start again it loses an answer, once. Notes how long the
-/// scripts are.
-class OnceSilentStage final : public Stage {
- public:
-  explicit OnceSilentStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
-  Outcome<void> reset() override { return was_begun_++ > 0 ? Outcome<void>{} : stage_->reset(); }
-  [[nodiscard]] bool can_reset() const override { return false; }
-  Outcome<void> renew_models() override { return {}; }
-  Outcome<BothHeard> play(const Script& script) override {
-    auto heard = stage_->play(script);
-    lengths.push_back(length_of(script));
-    if (heard && lengths.size() == kSilent) heard->target.said.clear();
-    return heard;
-  }
-
-  static constexpr std::size_t kSilent = 40;
-  std::vector<Duration> lengths;
-
- private:
-  std::unique_ptr<Stage> stage_;
-  int was_begun_ = 0;
-};
-
 TEST(Campaign, PlaysAgainNoMoreThanTheLastCases) {
   constexpr std::size_t kCases = 4;
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
@@ -473,22 +336,6 @@ TEST(Campaign, PlaysAgainNoMoreThanTheLastCases) {
   EXPECT_GT(with_history, last_cases(2));
   EXPECT_LT(with_history, last_cases(10));
 }
-
-/// A device that nobody can start again.
-class OnceBegunStage final : public Stage {
- public:
-  explicit OnceBegunStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
-  Outcome<void> reset() override {
-    return std::exchange(was_begun_, true) ? Outcome<void>{} : stage_->reset();
-  }
-  [[nodiscard]] bool can_reset() const override { return false; }
-  Outcome<void> renew_models() override { return {}; }
-  Outcome<BothHeard> play(const Script& script) override { return stage_->play(script); }
-
- private:
-  std::unique_ptr<Stage> stage_;
-  bool was_begun_ = false;
-};
 
 /// Of a board that nobody can start again, whose joints are elsewhere than anybody knows.
 CampaignState run_elsewhere(const std::string& fault, bool knows_what_strays) {
@@ -517,28 +364,6 @@ TEST(Campaign, DoesNotJudgeWhereATargetIsThatItLedAstray) {
   EXPECT_TRUE(is_accused(run_elsewhere("&fault=stuck:echo", true)));
 }
 
-/// Notes of each script how long it is, and whether the device is as new.
-class NotingStage final : public Stage {
- public:
-  explicit NotingStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
-  Outcome<void> reset() override {
-    is_new_ = true;
-    return stage_->reset();
-  }
-  [[nodiscard]] bool can_reset() const override { return true; }
-  Outcome<void> renew_models() override { return stage_->renew_models(); }
-  Outcome<BothHeard> play(const Script& script) override {
-    played.emplace_back(length_of(script), std::exchange(is_new_, false));
-    return stage_->play(script);
-  }
-
-  std::vector<std::pair<Duration, bool>> played;
-
- private:
-  std::unique_ptr<Stage> stage_;
-  bool is_new_ = false;
-};
-
 TEST(Campaign, PlaysWhatGoesThroughStatesToADeviceThatIsAsNew) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "kinovazed");
   const auto material = live_material("kinovazed", "tcp:127.0.0.1:1");
@@ -557,23 +382,6 @@ TEST(Campaign, PlaysWhatGoesThroughStatesToADeviceThatIsAsNew) {
     EXPECT_TRUE(is_near || is_new == (length > 16s)) << i;
   }
 }
-
-/// Its target never answers.
-class SilentStage final : public Stage {
- public:
-  explicit SilentStage(std::unique_ptr<Stage> stage) : stage_{std::move(stage)} {}
-  Outcome<void> reset() override { return stage_->reset(); }
-  [[nodiscard]] bool can_reset() const override { return stage_->can_reset(); }
-  Outcome<void> renew_models() override { return stage_->renew_models(); }
-  Outcome<BothHeard> play(const Script& script) override {
-    auto heard = stage_->play(script);
-    if (heard) heard->target.said.clear();
-    return heard;
-  }
-
- private:
-  std::unique_ptr<Stage> stage_;
-};
 
 CampaignState state_after_change(std::unique_ptr<Stage> (*make_changed)(const cli::Device&)) {
   const auto& device = **cli::find_device(cli::shipped_devices(), "parol6");
