@@ -156,6 +156,7 @@ void expect_setting_out(BoardBench& board) {
 /// acceleration of the demonstration, and then turns.
 template <class Condition>
 void expect_turn(BoardBench& board, std::size_t joint, Condition is_on_its_way) {
+  board.needs_emulation();
   board.spoil();
   board.act(with_code(kHome));
   board.about(fmt::format("the final move of j{}", joint + 1));
@@ -180,6 +181,55 @@ void expect_turn(BoardBench& board, std::size_t joint, Condition is_on_its_way) 
   board.expect_true(turns && std::abs(furthest - wanted) < 0.05 * wanted + 30,
                     fmt::format("it to turn after {:.0f} steps", wanted),
                     turns ? fmt::format("it turns after {}", furthest) : "it does not turn");
+}
+
+/// A joint that has begun to brake for its end is led back, and a little towards it again: there it
+/// gets faster again, from the speed to which it had braked.
+void expect_to_go_on_after_braking(BoardBench& board, std::size_t joint) {
+  board.spoil_memory();
+  const auto end = kDemoOut[joint];
+  const int sign = end < kStandby[joint].value ? -1 : 1;
+  const auto left = [=](const Answer& answer) {
+    return (end - answer.position[joint].value) * sign;
+  };
+  const int some_way = kDemoSpeeds[joint] / 4;  // half of that on which it brakes
+  board.about(fmt::format("j{} at the end of its way out", joint + 1));
+  const auto braking = board.ask_until(
+      with_code(kDemo), [&](const Answer& answer) { return left(answer) < some_way; }, kLeg);
+  if (!braking) return board.fail("the joint to get there", "it does not");
+  const auto is_far = [&](const Answer& answer) { return left(answer) > 6 * some_way; };
+  board.about(fmt::format("a jog of j{} in a demonstration", joint + 1));
+  if (!board.ask_until(jog(joint, -2000 * sign), is_far, 20s)) {
+    return board.fail("the joint to go back", "it does not");
+  }
+  board.keep_asking(jog(joint, 500 * sign), 100ms);
+  const auto after = board.keep_asking(with_code(kDemo), 100ms);
+  const auto slowest = braking->speed[joint].value * sign;
+  board.about(fmt::format("j{}, which goes on after it had begun to brake", joint + 1));
+  board.expect_true(after.speed[joint].value * sign >= slowest,
+                    fmt::format("a speed of {} steps/s and more", slowest),
+                    fmt::format("{} steps/s", after.speed[joint].value * sign));
+  board.act(idle());
+  board.walk_to_standby();
+}
+
+/// The final move of J1 is ended by a slow jog. The ramp begins at the step that belongs to its
+/// speed, with the interval of before: so it ends soon.
+void expect_short_ramp_after_jog(BoardBench& board) {
+  board.needs_emulation();
+  board.spoil();
+  board.act(with_code(kHome));
+  board.about("the final move of j1");
+  const auto is_on_its_way = [](const Answer& answer) {
+    return answer.position[kJ1].value > 600 && answer.speed[kJ1].value > 2200;
+  };
+  if (!board.ask_until(idle(), is_on_its_way, 30s)) {
+    return board.fail("j1 to get faster on it", "it does not");
+  }
+  board.keep_asking(jog(kJ1, 200), 50ms);
+  const auto after = board.keep_asking(with_code(kDemo), 100ms);
+  board.about("j1 in a demonstration, 100 ms after a jog that has ended its homing");
+  board.expect(after, speed_field(kJ1), kDemoSpeeds[kJ1]);
 }
 
 constexpr Clause kDemoClauses[] = {
@@ -276,6 +326,7 @@ constexpr Clause kDemoClauses[] = {
          "firmware: 69 goes on with whatever the steppers have", Profiles::kFirmware),
     full(from(kFresh, Hazard::kMove, "J1 gets faster with 6000 steps/s^2 after 4500.",
               [](BoardBench& board) {
+                board.needs_emulation();
                 board.spoil();
                 board.act(with_code(kHome));
                 const auto is_on_its_way = [](const Answer& answer) {
@@ -317,6 +368,10 @@ constexpr Clause kDemoClauses[] = {
                                     });
                                   }))),
 
+    variant("after-jog",
+            full(from(kFresh, Hazard::kMove, "J1 is at its maximum soon after a slow jog.",
+                      on<expect_short_ramp_after_jog>))),
+
     must("parol6.demo.once",
          "A demonstration that has ended does not begin again until an idle frame has reset it.",
          "firmware", Profiles::kFirmware),
@@ -353,6 +408,13 @@ constexpr Clause kDemoClauses[] = {
                                      before.position[kJ3].value - 100);
                 board.walk_to_standby();
               })),
+
+    variant("braking-up",
+            full(from(kHomed, Hazard::kMove, "J6, led back from the end, gets faster again.",
+                      [](BoardBench& board) { expect_to_go_on_after_braking(board, kJ6); }))),
+    variant("braking-down",
+            full(from(kHomed, Hazard::kMove, "J3, led back from the end, gets faster again.",
+                      [](BoardBench& board) { expect_to_go_on_after_braking(board, kJ3); }))),
 
     must("parol6.demo.stopped-joints",
          "Joints that a jog of speed 0 has stopped in the demonstration stay where they are, and "

@@ -150,6 +150,8 @@ constexpr Clause kJogClauses[] = {
               [](BoardBench& board) {
                 for (const int value : {3, 7, 20}) expect_jog(board, kJ6, value, 2s);
               })),
+    variant("slowest", full(from(kEnabled, Hazard::kMove, "J6 makes the steps of 1 step/s.",
+                                 [](BoardBench& board) { expect_jog(board, kJ6, 1, 3500ms); }))),
 
     must("parol6.jog.fast",
          "A joint jogs as fast as the GUI's tables have it, to within the length of a pass.",
