@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string_view>
 
@@ -19,6 +20,10 @@ void let_go(ServerBench& server);
 /// In which a server has looked at its arm: it does every 10 ms and five calls, and stopping the
 /// arm before takes three pauses of 10 ms.
 [[nodiscard]] Duration look_time(const ServerBench& server);
+
+/// The calls of a stop, by the names of the inputs that let them fail, behind `arm.fail.`.
+inline constexpr std::array<std::string_view, 3> kStopping{
+    "trajectory_erase", "joystick_axes_write", "joystick_release"};
 
 /// Puts the hand there and holds it. The server may not have looked at the arm yet.
 void hold_at(ServerBench& server, const Place& place);

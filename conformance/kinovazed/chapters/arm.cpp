@@ -34,7 +34,6 @@ struct Calls {
   Duration takes;
 };
 constexpr Duration kModeTime = 700ms;
-constexpr std::array kStopping{"trajectory_erase"sv, "joystick_axes_write"sv, "joystick_release"sv};
 constexpr Calls stopping_and(std::string_view command, std::string_view call, int beat,
                              Duration takes = {}) {
   return {command, {kStopping[0], kStopping[1], kStopping[2], call}, beat, takes};
