@@ -109,14 +109,14 @@ def check_restart(armjig, path):
 
 
 @contextlib.contextmanager
-def emulated_with_hands(armjig, path, device):
+def emulated_with_hands(armjig, path, device, *options):
     """An emulated device that takes inputs, its place, and a command that sets them."""
     folder = Folder(armjig, path)
     os.mkfifo(folder.file("input"))
     hand = folder.script("hand", SET)
     entry = os.open(folder.file("input"), os.O_RDWR)  # kept open, so that it never ends
     said = open(folder.file("said"), "w")
-    emulator = subprocess.Popen([armjig, "emulate", device, "--json"], stdin=entry,
+    emulator = subprocess.Popen([armjig, "emulate", device, "--json", *options], stdin=entry,
                                 stdout=subprocess.PIPE, stderr=said, text=True)
     try:
         place = json.loads(emulator.stdout.readline())
@@ -168,7 +168,7 @@ def check_slow_hand(armjig, path):
     Neither does what the server sees before it hears a command, nor that the arm is stopped since nobody gave a sign
     of life for half a second.
     """
-    with emulated_with_hands(armjig, path, "kinovazed") as (folder, target, hand):
+    with emulated_with_hands(armjig, path, "kinovazed", "--tcp", "0") as (folder, target, hand):
         for case, seconds, verdict, reason in (
                 ("kinovazed.death.retract-read", 0.05, "inconclusive", "takes longer than the server to look"),
                 ("kinovazed.joystick.bounds.outside", 0.2, "pass", ""),
