@@ -24,6 +24,11 @@ void let_go(ServerBench& server);
 /// The calls of a stop, by the names of the inputs that let them fail, behind `arm.fail.`.
 inline constexpr std::array<std::string_view, 3> kStopping{
     "trajectory_erase", "joystick_axes_write", "joystick_release"};
+/// All that a command may make.
+inline constexpr std::array<std::string_view, 9> kAllCalls{
+    "take_control",        "release_control",       "trajectory_erase",
+    "joystick_axes_write", "joystick_release",      "home_button_press",
+    "target_write",        "cartesian_mode_select", "angular_mode_select"};
 
 /// Puts the hand there and holds it. The server may not have looked at the arm yet.
 void hold_at(ServerBench& server, const Place& place);

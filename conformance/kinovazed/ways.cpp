@@ -15,6 +15,12 @@ void initialize_afresh(ServerBench& server) {
   server.perform("Initialize", Event::kInitialized);
 }
 
+void start_again(ServerBench& server) {
+  server.expect_true(server.answers(), "an answer to EStop", "silence");
+  server.accept("QuitEStop");
+  server.perform("Initialize", Event::kInitialized);
+}
+
 void initialize_at_home(ServerBench& server) {
   server.perform("RunObjective:Home", Event::kObjectiveDone);
   server.wait_until_before_beat(kBeforeBeat);

@@ -54,6 +54,9 @@ void switch_off(ServerBench& server);
 /// The same, and initializes.
 void initialize_afresh(ServerBench& server);
 
+/// Begins again in idle, out of any state. What is said meanwhile is passed over.
+void start_again(ServerBench& server);
+
 /// Initializes again an arm that is there already, which a beat has to show.
 void initialize_at_home(ServerBench& server);
 

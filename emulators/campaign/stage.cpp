@@ -33,11 +33,17 @@ void show_life(StreamPort& port) { (void)port.read({}, port.now()); }
 void show_life(SessionSource& server) { server.pause(1us); }
 void show_life(BusPort& port) { port.wait_until(port.now()); }
 
-/// Whether it is there: a server is when it takes a client, which leaves as a system tells it.
+/// Whether it is there: a server is when it takes a client, which leaves as a system tells it. One
+/// that begins to listen only when it is woken has a while for that, as each host gives it.
 bool greet(SessionSource& server) {
   constexpr auto kPatience = 100ms;
+  constexpr auto kBetween = 10ms;
   const auto port = server.make_port();
-  if (!port->connect(port->now() + kPatience)) return false;
+  const auto deadline = port->now() + kPatience;
+  while (!port->connect(deadline)) {
+    if (port->now() >= deadline) return false;
+    rest(server, kBetween);
+  }
   port->half_close();
   rest(server, kPatience);
   return true;

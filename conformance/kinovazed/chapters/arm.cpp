@@ -50,20 +50,9 @@ constexpr std::array kCallsInIdle{
 constexpr std::array kCallsInSteering{Calls{"MoveJoystick:0:0:0", {"joystick_axes_write"}, 69, {}},
                                       stopping_and("Freeze", "", 13),
                                       stopping_and("RunObjective:SuckDoor", "target_write", 37)};
-constexpr std::array kAllCalls{
-    "take_control"sv,        "release_control"sv,       "trajectory_erase"sv,
-    "joystick_axes_write"sv, "joystick_release"sv,      "home_button_press"sv,
-    "target_write"sv,        "cartesian_mode_select"sv, "angular_mode_select"sv};
 
 /// Whether a failure hangs or ends a shipped server; that has requirements of its own.
 bool is_fatal(std::string_view call) { return call.ends_with("_mode_select"); }
-
-/// What is said is passed over, and begins again in idle.
-void start_again(ServerBench& server) {
-  server.expect_true(server.answers(), "an answer to EStop", "silence");
-  server.accept("QuitEStop");
-  server.perform("Initialize", Event::kInitialized);
-}
 
 /// EStop and QuitEStop, while each of the calls fails once.
 void estop_while_failing(ServerBench& server, std::initializer_list<std::string_view> calls) {

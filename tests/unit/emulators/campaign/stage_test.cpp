@@ -225,6 +225,50 @@ TEST(Stage, LetsTheGuardLookAtTheTargetBetweenTheModels) {
   EXPECT_GT(models, 1);
 }
 
+/// A client of a server that takes none before a moment.
+class EarlyClient final : public SessionAround {
+ public:
+  EarlyClient(std::unique_ptr<SessionPort> inner, Instant opens)
+      : SessionAround{std::move(inner)}, opens_{opens} {}
+  Result<void> connect(Instant deadline) override {
+    if (now() < opens_) return fail(ErrorCode::kRefused);
+    return inner().connect(deadline);
+  }
+  Result<void> send(Bytes segment) override { return inner().send(segment); }
+  Result<Received> receive(std::span<std::byte> into, Instant deadline) override {
+    return inner().receive(into, deadline);
+  }
+  void half_close() override { inner().half_close(); }
+  void close() override { inner().close(); }
+  void reset() override { inner().reset(); }
+
+ private:
+  Instant opens_;
+};
+
+/// An emulated server that listens so much later than it could.
+StageSetup<SessionSource> server_late_by(Duration late) {
+  StageSetup<SessionSource> setup;
+  setup.make_target = [late] {
+    auto server =
+        *test::wiring<cli::OnServer>("kinovazed").open_emulated(*parse_target("emulated:"));
+    const auto opens = server->now() + late;
+    return Outcome<Rig<SessionSource>>{Rig<SessionSource>{std::make_unique<SourceAround>(
+        std::move(server), [opens](std::unique_ptr<SessionPort> port) {
+          return std::make_unique<EarlyClient>(std::move(port), opens);
+        })}};
+  };
+  return setup;
+}
+
+/// When a server listens decides who hosts it.
+TEST(Stage, WaitsAWhileForAServerThatTakesNoClientYet) {
+  EXPECT_TRUE(StageOn<SessionSource>{server_late_by(50ms)}.reset());
+  const auto never = StageOn<SessionSource>{server_late_by(1s)}.reset();
+  ASSERT_FALSE(never);
+  EXPECT_EQ(never.error().code, ErrorCode::kRefused);
+}
+
 Rig<StreamPort> supervised_board() {
   auto wiring = test::wiring<cli::OnStream>("parol6");
   wiring.open_real = [](const Target& /*place*/,
