@@ -114,6 +114,7 @@ void ServerBench::fail_by(std::string_view wanted, const Heard& heard) {
 
 /// Nothing that is a line came. What did come is the finding.
 void ServerBench::fail_by_no_line(std::string wanted, Duration time) {
+  is_owed_ = true;
   const auto& rest = client().unfinished;
   if (rest.empty()) return fail_by_silence(std::move(wanted), silence_of(time));
   fail(wanted + " and CR LF",
@@ -466,14 +467,20 @@ bool ServerBench::answers() {
   if (is_deaf()) return true;
   client().words.clear();
   send("EStop\r\n");
-  return next_word(answer_time()).has_value();
+  auto word = next_word(answer_time());
+  while (word && !word->is(Event::kAccepted) && !word->is(Event::kRejected)) {
+    word = next_word(answer_time());
+  }
+  return word.has_value();
 }
 
 bool ServerBench::is_served() { return is_deaf() || (connect_again(Duration{}) && answers()); }
 
-/// EStop ends whatever is under way; what was said before is passed over.
+/// EStop ends whatever is under way; what was said before is passed over, an answer that a case
+/// missed, too.
 bool ServerBench::stop_all() {
   auto& one = client();
+  if (std::exchange(is_owed_, false)) pause(answer_time());
   one.words.clear();
   send("\r\nEStop\r\n");
   for (auto word = next_word(answer_time()); word; word = next_word(answer_time())) {

@@ -146,7 +146,8 @@ class ServerBench final : public PortBench<SessionSource> {
   /// What follows ends the server, or leaves it as no client can put it right: it is started anew
   /// before the next case. Skips the case where nobody can do that.
   void spoil();
-  /// Whether the server answers EStop; no finding yet. What came before is passed over.
+  /// Whether the server answers EStop; no finding yet. What came before is passed over, and what
+  /// comes of earlier commands, too.
   [[nodiscard]] bool answers();
   /// Connects, once, and tells whether EStop is answered; no finding yet.
   [[nodiscard]] bool is_served();
@@ -218,7 +219,8 @@ class ServerBench final : public PortBench<SessionSource> {
   Start start_ = kStopped;
   Opening opened_{};  ///< between what shows that it was not open yet, and that it is
   bool is_spoiled_ = false;
-  bool is_missed_ = false;                                 ///< the server did not come back
+  bool is_missed_ = false;  ///< the server did not come back
+  bool is_owed_ = false;    ///< an answer that did not come in its time may come yet
   std::map<std::string, std::int64_t, std::less<>> left_;  ///< inputs to put back after the case
   MayStop may_stop_;
   bool is_seen_stopped_ = false;  ///< since it was connected

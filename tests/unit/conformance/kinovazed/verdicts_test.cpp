@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -115,6 +116,43 @@ class MortalServer final : public SourceAround {
 
  private:
   std::shared_ptr<bool> is_dead_;
+};
+
+/// A connection on which all comes 300 ms late from a certain EStop on, and that one 900 ms.
+class LateSession final : public SessionAround {
+ public:
+  using PortAround::PortAround;
+
+  Result<void> connect(Instant deadline) override { return inner().connect(deadline); }
+  Result<void> send(Bytes segment) override {
+    const auto text = as_text(segment);
+    const bool is_first = !last_due_ && is_armed_ && text == "EStop\r\n";
+    is_armed_ = is_armed_ || text == "MoveJoystick:1:1:1\r\n";
+    if (!is_first && !last_due_) return inner().send(segment);
+    last_due_ = is_first ? now() + kFirst : std::max(*last_due_, now()) + kOthers;
+    held_.emplace_back(*last_due_, text);
+    return {};
+  }
+  Result<Received> receive(std::span<std::byte> into, Instant deadline) override {
+    while (!held_.empty() && held_.front().first <= deadline) {
+      auto received = inner().receive(into, held_.front().first);
+      if (!received || received->arrival != Arrival::kDeadline) return received;
+      const auto text = held_.front().second;
+      held_.pop_front();
+      (void)inner().send(std::as_bytes(std::span{text}));
+    }
+    return inner().receive(into, deadline);
+  }
+  void half_close() override { inner().half_close(); }
+  void close() override { inner().close(); }
+  void reset() override { inner().reset(); }
+
+ private:
+  static constexpr auto kFirst = std::chrono::milliseconds{900};
+  static constexpr auto kOthers = std::chrono::milliseconds{300};
+  bool is_armed_ = false;
+  std::optional<Instant> last_due_;
+  std::deque<std::pair<Instant, std::string>> held_;
 };
 
 std::string unchanged(char c) { return std::string{c}; }
@@ -305,6 +343,31 @@ TEST(ServerVerdicts, AServerThatALineEndsHasFailedThatCaseAndIsAskedTheOthers) {
   ASSERT_NE(table, report.rows.end());
   EXPECT_EQ(table->verdict, Verdict::kFail);
   EXPECT_THAT(table->actual, HasSubstr("the end of the connection, twice"));
+}
+
+/// Or its answer would be taken for that of a later command.
+TEST(ServerVerdicts, AnAnswerThatComesTooLateAccusesNoOtherCase) {
+  auto server = test::wiring<cli::OnServer>("kinovazed")
+                    .open_emulated(parse_target("emulated:").value())
+                    .value();
+  auto late =
+      std::make_unique<SourceAround>(std::move(server), [](std::unique_ptr<SessionPort> port) {
+        return std::make_unique<LateSession>(std::move(port));
+      });
+  const auto bench =
+      make_bench(Rig<SessionSource>{std::move(late)}, {.permissions = Permissions::all()});
+  RunOptions options;
+  options.selection.filter = "kinovazed.time";
+  options.selection.tier = Tier::kFull;
+  options.permissions = Permissions::all();
+  const auto report = run_suite(suite(), **bench, options, [](const ReportRow&) {});
+  EXPECT_GE(report.rows.size(), 5U);
+  for (const auto& row : report.rows) {
+    if (row.name != "kinovazed.time.answer.stopped") {
+      EXPECT_EQ(row.verdict, Verdict::kPass)
+          << row.name << ": " << row.expected << " / " << row.actual << "\n" << row.evidence;
+    }
+  }
 }
 
 TEST(OnlyLooking, SendsNothingToAnArmThatIsInUse) {
