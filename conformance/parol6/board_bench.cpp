@@ -31,6 +31,12 @@ const Field& telemetry_field(std::string_view name) {
 
 }  // namespace
 
+bool is_without_gap(std::span<const Answer> answers) noexcept {
+  return std::ranges::adjacent_find(answers, [](const Answer& before, const Answer& after) {
+           return after.asked - before.received > std::chrono::milliseconds{100};
+         }) == answers.end();
+}
+
 CommandFrame with_code(int code) { return with_code(Command{static_cast<std::uint8_t>(code)}); }
 CommandFrame with_code(Command code) {
   CommandFrame frame;
@@ -361,29 +367,39 @@ void BoardBench::leave_switch() {
   act(idle());
 }
 
-/// A 100 only once, then idle frames: a 100 that is held homes again and again. Homes once even if
-/// the arm is homed, for cases look at how it went.
+/// Homes once even if the arm is homed, for cases look at how it went; and again if this machine
+/// did not look all the time, unless it never does.
 void BoardBench::home() {
-  if (homing_log_.empty() || !is_homed(ask(idle()))) {
-    leave_switch();
-    homing_log_ = {ask(idle())};
-    act(with_code(100));
-    const auto finished = ask_until(
-        idle(),
-        [this](const Answer& answer) {
-          homing_log_.push_back(answer);
-          return is_homed(answer);
-        },
-        kHomingTime);
-    if (!finished && !error()) {
-      fail("all joints homed within 90 s",
-           sentence_of(telemetry_field("homed"), homing_log_.back().homed) +
-               "; are arm and switches there?");
-    }
-    origin_ = kStandby;
-    act(idle());
+  constexpr int kMostHomings = 3;
+  for (int i = 0; i < kMostHomings && !has_seen_homing_ && !is_over() && !error(); ++i) {
+    home_once();
+    has_seen_homing_ = is_without_gap(homing_log_) || i + 1 == kMostHomings;
   }
+  if (!is_homed(ask(idle()))) home_once();
   walk_to_standby();
+}
+
+/// A 100 only once, then idle frames: a 100 that is held homes again and again. One that was seen
+/// all the time is not forgotten for one that was not.
+void BoardBench::home_once() {
+  leave_switch();
+  std::vector<Answer> log{ask(idle())};
+  act(with_code(100));
+  const auto finished = ask_until(
+      idle(),
+      [&log](const Answer& answer) {
+        log.push_back(answer);
+        return is_homed(answer);
+      },
+      kHomingTime);
+  if (!finished && !error()) {
+    fail("all joints homed within 90 s",
+         sentence_of(telemetry_field("homed"), log.back().homed) + "; are arm and switches there?");
+  }
+  const bool is_kept = homing_log_.empty() || is_without_gap(log) || !is_without_gap(homing_log_);
+  if (is_kept) homing_log_ = std::move(log);
+  origin_ = kStandby;
+  act(idle());
 }
 
 /// The board would close any distance in 10 ms if it could. Each piece is counted from the one

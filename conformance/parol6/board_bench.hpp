@@ -31,6 +31,9 @@ struct Answer : TelemetryFrame {
   Instant received{};  ///< when its own last byte had come
 };
 
+/// Whether somebody looked all the time: from no answer to the next question is more than 100 ms.
+[[nodiscard]] bool is_without_gap(std::span<const Answer> answers) noexcept;
+
 // Frames with the board's own check byte, which every profile takes.
 [[nodiscard]] CommandFrame with_code(int code);  ///< any, also one that means nothing
 [[nodiscard]] CommandFrame with_code(Command code);
@@ -106,6 +109,7 @@ class BoardBench final : public StreamBench {
   void expect_same(const Answer& answer, std::string_view field, const Answer& before);
 
   /// All answers of the last whole run of homing, 10 ms apart or less, the first one from before.
+  /// If this machine did not look all the time, of an earlier one.
   [[nodiscard]] const std::vector<Answer>& homing_log() const noexcept { return homing_log_; }
 
   /// Time in which an answer has to come.
@@ -141,8 +145,10 @@ class BoardBench final : public StreamBench {
   void walk_back();
   void leave_switch();
   void home();
+  void home_once();
 
   std::vector<Answer> homing_log_;
+  bool has_seen_homing_ = false;                          ///< or given that up
   std::optional<std::array<Steps, kJointCount>> origin_;  ///< where `kEnabled` cases begin
   Instant last_answered_{};
   std::string not_understood_;  ///< what came last that is no answer, for people

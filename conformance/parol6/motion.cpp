@@ -85,11 +85,7 @@ void expect_pace(BoardBench& board, std::span<const Answer> answers, std::size_t
 }
 
 void expect_seen(BoardBench& board, std::span<const Answer> answers, std::string_view what) {
-  const auto gap =
-      std::ranges::adjacent_find(answers, [](const Answer& before, const Answer& after) {
-        return after.asked - before.received > std::chrono::milliseconds{100};
-      });
-  if (gap == answers.end()) return;
+  if (is_without_gap(answers)) return;
   board.leave_open(fmt::format("this machine did not look at {} for more than 100 ms", what));
 }
 

@@ -3,15 +3,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "conformance/parol6/suite.hpp"
 #include "conformance/run.hpp"
+#include "harness/link/port_around.hpp"
 #include "harness/wire/parol6/fields.hpp"
+#include "harness/wire/parol6/frame.hpp"
 #include "tests/unit/support/devices.hpp"
 
 namespace armjig::parol6::conformance {
@@ -43,6 +51,34 @@ class ChangedBoard final : public StreamPort {
  private:
   Rig<StreamPort> board_;
   Change change_;
+};
+
+/// As reached by a machine that stands still for 300 ms, five seconds after the first command to
+/// home.
+class BoardBehindAPause final : public StreamAround {
+ public:
+  using PortAround::PortAround;
+  Result<void> write(Bytes bytes) override {
+    constexpr std::chrono::seconds kLater{5};
+    if (!stands_ && frame_command(bytes) == Command::kHome) stands_ = now() + kLater;
+    return inner().write(bytes);
+  }
+  Result<std::size_t> read(std::span<std::byte> into, Instant deadline) override {
+    constexpr std::chrono::milliseconds kStands{300};
+    auto size = inner().read(into, deadline);
+    const bool is_pause = size && *size == 0;
+    if (!is_pause || !stands_ || now() < *stands_) return size;
+    stands_ = Instant::max();
+    return inner().read(into, now() + kStands);
+  }
+
+ private:
+  static Command frame_command(Bytes frame) {
+    const auto offset = find_field(command_fields(), "command")->offset;
+    return offset < frame.size() ? Command{std::to_integer<std::uint8_t>(frame[offset])}
+                                 : Command::kIdle;
+  }
+  std::optional<Instant> stands_;
 };
 
 std::byte& byte_of(std::span<std::byte> frame, std::string_view field) {
@@ -93,6 +129,21 @@ TEST(BoardVerdicts, AnEmergencyStopThatAHandReleasedHasToReadReleased) {
   ASSERT_TRUE(start);
   EXPECT_EQ(start->verdict, Verdict::kFail);
   EXPECT_EQ(conclusion_of(report), Conclusion::kFindings);
+}
+
+TEST(BoardVerdicts, AHomingThatThisMachineDidNotSeeIsBegunAgain) {
+  auto board =
+      *test::wiring<cli::OnStream>("parol6").open_emulated(parse_target("emulated:").value());
+  const auto bench =
+      make_bench(Rig<StreamPort>{std::make_unique<BoardBehindAPause>(std::move(board))}, {});
+  RunOptions options;
+  options.selection.filter = "parol6.home.back-off";
+  options.selection.tier = Tier::kFull;
+  options.permissions = Permissions::all();
+  const auto report = run_suite(suite(), **bench, options, [](const ReportRow&) {});
+  EXPECT_GE(report.count(Verdict::kPass), 5U);
+  EXPECT_EQ(report.count(Verdict::kInconclusive), 0U);
+  EXPECT_EQ(report.count(Verdict::kFail), 0U);
 }
 
 TEST(BoardVerdicts, ABoardThatNeverHomesIsAFinding) {
